@@ -1,0 +1,205 @@
+"""The command line: ``liftopt solve`` and ``liftopt crosscheck``.
+
+Exit status: 0 solved and verified (or all cross-checks passed), 2 bad input, 3 no verified solution, 130 interrupted.
+Results go to stdout, progress and errors to stderr. Modules that load the solver are imported when they are needed, so
+that help and bad input are answered at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import liftopt
+from liftopt.errors import InfeasibleError, InputError, LiftoptError
+from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
+from liftopt.scenario_schema import describe
+
+SOLVED, BAD_INPUT, NOT_SOLVED, INTERRUPTED = 0, 2, 3, 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit status.
+
+    Args:
+        argv: arguments after the program's name; None takes those of the process.
+
+    Raises:
+        SystemExit: from argparse, for ``--help``, ``--version`` (0) and wrong usage (2).
+    """
+    args = _parser().parse_args(argv)
+    try:
+        status: int = args.run(args)
+    except KeyboardInterrupt:
+        _complain("interrupted")
+        return INTERRUPTED
+    except LiftoptError as error:
+        status = BAD_INPUT if isinstance(error, InputError) else NOT_SOLVED
+        if getattr(args, "json", False):
+            _write(json.dumps(_error_dict(error, status)) + "\n")
+        _complain(str(error))
+    except OSError as error:  # a full disk, a folder taken away meanwhile: nothing of ours to debug
+        _complain(str(error))
+        return BAD_INPUT
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="liftopt",
+        description="Predict how a person and a robot lift an object together.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"liftopt {liftopt.__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    solve = commands.add_parser(
+        "solve",
+        help="find the motion, joint torques and grasp forces of one lift",
+        description="Find the motion, joint torques and grasp forces of one lift; write them and sum them up.",
+        epilog=_scenario_help(),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    solve.add_argument(
+        "scenario",
+        nargs="?",
+        metavar="SCENARIO",
+        help=f"a TOML file, or one that is shipped: {', '.join(shipped_scenarios())} (default: table5)",
+    )
+    solve.add_argument("--out", metavar="DIR", help="folder for the result (default: results/<scenario name>)")
+    solve.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="overrides",
+        metavar="KEY=VALUE",
+        help="change one entry of the scenario, for example table.mass=3; may be repeated",
+    )
+    solve.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    solve.set_defaults(run=_solve)
+
+    crosscheck = commands.add_parser(
+        "crosscheck",
+        help="compare the DH recursion of the paper with Pinocchio",
+        description="Compare the paper's DH recursion with Pinocchio on random states of the human and the robot.",
+        allow_abbrev=False,
+    )
+    crosscheck.add_argument(
+        "--samples", type=int, default=1000, metavar="N", help="random states of each (default: %(default)s)"
+    )
+    crosscheck.set_defaults(run=_crosscheck)
+    return parser
+
+
+def _solve(args: argparse.Namespace) -> int:
+    scenario = load_scenario(args.scenario, args.overrides)
+    out = Path("results", scenario.name) if args.out is None else Path(args.out)
+    with _output_folder(out), _progress() as progress:
+        from liftopt.lift import lift
+
+        solution = lift(scenario, out=out, progress=progress)
+
+    from liftopt.summary import summary_dict
+
+    summary = summary_dict(solution, out)
+    _write(json.dumps(summary, allow_nan=False) + "\n" if args.json else _as_text(summary))
+    if summary["solved"]:
+        return SOLVED
+    _complain(f"no verified solution: {summary['reason']}; the best iterate is in {out}, marked as such")
+    return NOT_SOLVED
+
+
+def _crosscheck(args: argparse.Namespace) -> int:
+    from liftopt.crosscheck.report import crosscheck_report, render
+
+    report = crosscheck_report(samples=args.samples, seed=0)
+    _write(render(report).rstrip("\n") + "\n")
+    return SOLVED if report.passed else NOT_SOLVED
+
+
+@contextmanager
+def _output_folder(out: Path) -> Iterator[None]:
+    """Make sure before a long solve that a result can be written; take back the folders made if there is none."""
+    made: list[Path] = []
+    try:
+        _make_writable(out, made)
+        yield
+    finally:
+        with suppress(OSError):  # not empty: there is a result
+            for folder in reversed(made):
+                folder.rmdir()
+
+
+def _make_writable(out: Path, made: list[Path]) -> None:
+    try:
+        for folder in reversed((out, *out.parents)):
+            if not folder.exists():
+                folder.mkdir()
+                made.append(folder)
+        with tempfile.TemporaryFile(dir=out):
+            pass
+        blocked = [out / name for name in ("solution.nc", "scenario.toml") if (out / name).is_dir()]
+        blocked += [folder for folder in (out / "models",) if folder.exists() and not folder.is_dir()]
+    except OSError as error:
+        raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from None
+    if blocked:
+        raise InputError("--out", str(out), f"cannot be written: {blocked[0]} is in the way")
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str], None] | None]:
+    """Give a function that shows where the solve is, on a terminal only."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status("loading the solver") as line:
+        yield lambda message: line.update(escape(message))
+
+
+def _as_text(summary: dict[str, Any]) -> str:
+    from rich.console import Console
+
+    from liftopt.summary_text import print_summary
+
+    console = Console()
+    with console.capture() as capture:
+        print_summary(summary, console)
+    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
+
+
+def _scenario_help() -> str:
+    lines = [f"  {key}\n      {what}" for key, what in describe(Scenario)]
+    return "keys of a scenario, for a TOML file and for --set:\n" + "\n".join(lines)
+
+
+def _error_dict(error: LiftoptError, status: int) -> dict[str, Any]:
+    details: dict[str, Any] = {"message": str(error)}
+    if isinstance(error, InputError):
+        details |= {"key": error.key, "allowed": error.allowed}
+    if isinstance(error, InfeasibleError):
+        details |= {"constraint": error.constraint, "who": error.who, "amount": error.amount, "unit": error.unit}
+    return {"status": type(error).__name__, "solved": False, "exit_status": status, "error": details}
+
+
+def _complain(message: str) -> None:
+    print("liftopt: error:", " ".join(message.split()), file=sys.stderr)
+
+
+def _write(text: str) -> None:
+    encoding = sys.stdout.encoding or "utf-8"
+    try:
+        sys.stdout.write(text.encode(encoding, "replace").decode(encoding))
+        sys.stdout.flush()
+    except BrokenPipeError:  # the reader has seen enough; keep the interpreter from trying again on its way out
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,1 @@
+"""The optimal-control problem: agents that hold one object, collocated on cubic B-splines."""

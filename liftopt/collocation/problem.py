@@ -1,0 +1,145 @@
+"""The lift as a nonlinear programme: agents that hold one object, on a mesh, for a task.
+
+It knows no human, robot or table: another robot, a second person or a third agent needs a model and no change here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
+from liftopt.collocation.constraints import Constraints, build_constraints
+from liftopt.collocation.dynamics import Topology, agent_functions, object_functions
+from liftopt.collocation.kernels import Kernel, load_kernels
+from liftopt.collocation.layout import OBJECT_SIZE, Layout
+from liftopt.collocation.spline import Mesh
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, LiftedObject
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Team:
+    """Agents, the object they hold, and the kernels of their dynamics.
+
+    Attributes:
+        agents: in the order of the object's grasp frames.
+        held: the object.
+        topologies: of the agents and then of the object, with the values of their parameters.
+        kernels: in the same order.
+    """
+
+    agents: tuple[Agent, ...]
+    held: LiftedObject
+    topologies: tuple[Topology, ...]
+    kernels: tuple[Kernel, ...]
+
+    @staticmethod
+    def of(agents: tuple[Agent, ...], held: LiftedObject, say: Callable[[str], None] | None = None) -> Team:
+        """Load or compile the kernels; ``say`` hears of it when that takes long."""
+        topologies = [Topology.of(agent.reduced(), (agent.grasp_frame,)) for agent in agents]
+        topologies.append(Topology.of(held.model, held.grasp_frames))
+        builders = [agent_functions] * len(agents) + [object_functions]
+        kernels = load_kernels(list(zip(builders, topologies, strict=True)), say)
+        return Team(agents, held, tuple(topologies), tuple(kernels))
+
+    @property
+    def coordinates(self) -> tuple[int, ...]:
+        """Number of moving joints of each agent."""
+        return tuple(len(agent.posture) for agent in self.agents)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A team's task on a mesh.
+
+    Attributes:
+        team: who lifts what.
+        task: what is to be done.
+        mesh: where it is collocated.
+        posture_weight: weight of the squared joint angles in the objective; only to choose among static postures.
+    """
+
+    team: Team
+    task: LiftTask
+    mesh: Mesh
+    posture_weight: float = 0.0
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Positions of the unknowns."""
+        return Layout.on(self.mesh, self.team.coordinates)
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """The agents and the object as the assembly takes them."""
+        return tuple(
+            Part(kernel, self.layout.select(i)) for i, kernel in enumerate(self.team.kernels)
+        )
+
+    @cached_property
+    def constraints(self) -> Constraints:
+        """The named rows and their bounds."""
+        outputs = tuple(part.kernel.n_c for part in self.parts)
+        return build_constraints(self.team.agents, self.team.held, self.task, self.layout, outputs)
+
+    @cached_property
+    def nlp(self) -> Nlp:
+        """The functions a solver calls."""
+        return assemble(self.parts, self.mesh.weights, self.constraints.combine, self.constraints.linear)
+
+    @cached_property
+    def parameters(self) -> Array:
+        """Parameter vector of the NLP: T, the models' entries and the weights of the objective."""
+        task, packed = self.task, []
+        for i, part in enumerate(self.parts):
+            n = self.team.coordinates[i] if self._is_agent(i) else OBJECT_SIZE
+            # The integrals over time are T times those over the phase, and qdd = q'' / T**2.
+            y_weight = np.zeros(part.kernel.n_y)
+            y_weight[:n] = self.posture_weight
+            y_weight[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
+            c_weight = np.zeros(part.kernel.n_squared)
+            if self._is_agent(i):
+                y_weight[3 * n :] = task.force_weight * task.duration
+                c_weight[:] = task.agent_weights[i] * task.duration
+            kernel = np.concatenate([[task.duration], self.team.topologies[i].parameters])
+            packed.append(PartParameters(kernel, c_weight, y_weight))
+        return pack(packed)
+
+    def bounds(self) -> tuple[Array, Array]:
+        """Return lower and upper bounds (n_x,) of the unknowns.
+
+        A cubic B-spline lies in the hull of its control points, so limits on these hold at all times (eqs. 11, 15).
+        The object's pose at both ends is fixed where the task fixes it (eq. 18).
+        """
+        layout, task = self.layout, self.task
+        lower, upper = np.full(layout.n_x, -task.max_grasp_force), np.full(layout.n_x, task.max_grasp_force)
+        for i, agent in enumerate(self.team.agents):
+            lower[layout.control[:, layout.columns(i)]] = agent.limits.q_lower
+            upper[layout.control[:, layout.columns(i)]] = agent.limits.q_upper
+        pose = layout.control[:, layout.columns(layout.n_agents)]
+        lower[pose], upper[pose] = task.pose_lower, task.pose_upper
+        for block, fixed in ((0, task.start), (-1, task.end)):
+            given = np.flatnonzero(~np.isnan(fixed))
+            lower[pose[block, given]] = upper[pose[block, given]] = fixed[given]
+        return lower, upper
+
+    def unpack(self, x: Array) -> tuple[Array, Array]:
+        """Return control points (n_free, coordinates + 6) and grasp forces (K, 3 agents) of a vector of unknowns."""
+        return x[self.layout.control], x[self.layout.force]
+
+    def pack(self, control: Array, force: Array) -> Array:
+        """Return the vector of unknowns, clipped to its bounds."""
+        x = np.empty(self.layout.n_x)
+        x[self.layout.control], x[self.layout.force] = control, force
+        lower, upper = self.bounds()
+        return np.clip(x, lower, upper)
+
+    def _is_agent(self, part: int) -> bool:
+        return part < len(self.team.agents)

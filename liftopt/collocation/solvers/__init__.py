@@ -1,0 +1,1 @@
+"""Solver adapters: one module each, all with the same call."""

@@ -1,0 +1,155 @@
+"""IPOPT (Waechter and Biegler 2006) with MUMPS, through CasADi's ``nlpsol``, with the problem's own derivatives."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.result import Multipliers, SolverResult
+from liftopt.errors import SolverError
+
+Array = npt.NDArray[np.float64]
+SAFETY = 0.1
+EVALUATIONS = ("nlp_f", "nlp_g", "nlp_grad_f", "nlp_jac_g", "nlp_hess_l")
+
+
+@dataclass(frozen=True)
+class IpoptOptions:
+    """Options of IPOPT that liftopt sets; the others keep IPOPT's defaults.
+
+    Attributes:
+        tolerance: KKT error in the problem's own units at which it stops.
+        max_iterations: iterations before it gives up.
+        objective_scaling: factor on the objective inside IPOPT; torques squared are large beside the constraints.
+    """
+
+    tolerance: float = 1e-6
+    max_iterations: int = 500
+    objective_scaling: float = 0.1
+
+
+class Ipopt:
+    """IPOPT on one problem; ``solve`` may be called from many starts."""
+
+    def __init__(self, problem: Problem, options: IpoptOptions | None = None) -> None:
+        """Build the solver; raises SolverError where CasADi's IPOPT cannot be had."""
+        self.problem, self.options = problem, options or IpoptOptions()
+        self._deadline = _Deadline(problem.layout.n_x, problem.constraints.linear.shape[0], len(problem.parameters))
+        self._solvers: dict[bool, Any] = {}
+
+    def solve(
+        self, x0: Array, *, deadline: float, warm: Multipliers | None = None, problem: Problem | None = None
+    ) -> SolverResult:
+        """Solve from ``x0``; see ``Solver.solve``."""
+        solver = self._solver(warm is not None)
+        problem = problem or self.problem
+        lower, upper = problem.bounds()
+        constraints = problem.constraints
+        arguments = dict(x0=x0, p=problem.parameters, lbx=lower, ubx=upper)
+        arguments |= dict(lbg=constraints.lower, ubg=constraints.upper)
+        if warm is not None:
+            arguments |= dict(lam_x0=warm.x, lam_g0=warm.g)
+        self._deadline.at = deadline
+        began = time.perf_counter()
+        try:
+            found = solver(**arguments)
+        except RuntimeError as error:
+            raise SolverError(f"IPOPT could not run: {error}") from error
+        seconds = time.perf_counter() - began
+        stats = solver.stats()
+        return SolverResult(
+            x=np.asarray(found["x"]).ravel(),
+            multipliers=Multipliers(np.asarray(found["lam_x"]).ravel(), np.asarray(found["lam_g"]).ravel()),
+            objective=float(found["f"]),
+            iterations=int(stats["iter_count"]),
+            converged=bool(stats["success"]),
+            status=str(stats["return_status"]),
+            seconds=seconds,
+            evaluation_seconds=sum(float(stats.get(f"t_wall_{name}") or 0.0) for name in EVALUATIONS),
+        )
+
+    def _solver(self, warm: bool) -> Any:
+        if warm not in self._solvers:
+            try:
+                self._solvers[warm] = self._build(warm)
+            except RuntimeError as error:
+                raise SolverError(f"IPOPT could not be set up: {error}") from error
+        return self._solvers[warm]
+
+    def _build(self, warm: bool) -> Any:
+        nlp, options = self.problem.nlp, self.options
+        ipopt: dict[str, object] = dict(
+            print_level=0,
+            sb="yes",
+            # IPOPT measures errors of the scaled objective, and averages multipliers over more entries than we do.
+            tol=options.tolerance * options.objective_scaling * SAFETY,
+            max_iter=options.max_iterations,
+            nlp_scaling_method="none",
+            obj_scaling_factor=options.objective_scaling,
+            # Relaxed bounds would leave complementarity errors of the relaxation times the multiplier.
+            bound_relax_factor=1e-10,
+            mumps_permuting_scaling=0,
+            mumps_scaling=0,
+            mumps_pivot_order=0,
+        )
+        if warm:
+            ipopt |= dict(
+                warm_start_init_point="yes",
+                mu_init=1e-5,
+                warm_start_bound_push=1e-7,
+                warm_start_bound_frac=1e-7,
+                warm_start_slack_bound_push=1e-7,
+                warm_start_slack_bound_frac=1e-7,
+                warm_start_mult_bound_push=1e-7,
+            )
+        return ca.nlpsol(
+            "lift",
+            "ipopt",
+            {"x": nlp.x, "p": nlp.p, "f": nlp.f, "g": nlp.g},
+            dict(
+                grad_f=nlp.grad_f,
+                jac_g=nlp.jac_g,
+                hess_lag=nlp.hess_lag,
+                iteration_callback=self._deadline,
+                iteration_callback_ignore_errors=False,
+                print_time=False,
+                record_time=True,
+                calc_lam_p=False,
+                no_nlp_grad=True,
+                ipopt=ipopt,
+            ),
+        )
+
+
+class _Deadline(ca.Callback):  # type: ignore[misc]
+    """Stops IPOPT between iterations once the time is over; IPOPT's own limit cannot change between solves."""
+
+    def __init__(self, n_x: int, n_g: int, n_p: int) -> None:
+        ca.Callback.__init__(self)
+        self.at = float("inf")
+        self._sizes = {"x": n_x, "f": 1, "g": n_g, "lam_x": n_x, "lam_g": n_g, "lam_p": n_p}
+        self.construct("deadline", {})
+
+    def get_n_in(self) -> int:
+        return int(ca.nlpsol_n_out())
+
+    def get_n_out(self) -> int:
+        return 1
+
+    def get_name_in(self, i: int) -> str:
+        return str(ca.nlpsol_out(i))
+
+    def get_name_out(self, i: int) -> str:
+        return "stop"
+
+    def get_sparsity_in(self, i: int) -> Any:
+        return ca.Sparsity.dense(self._sizes.get(ca.nlpsol_out(i), 0), 1)
+
+    def eval(self, arguments: Any) -> list[int]:
+        return [int(time.monotonic() > self.at)]

@@ -1,0 +1,71 @@
+"""What every solver adapter takes beside the problem, and what it gives back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.problem import Problem
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """Lagrange multipliers, CasADi's sign: the Lagrangian is ``f + lam_g . g + lam_x . x``.
+
+    Attributes:
+        x: (n_x,) of the bounds.
+        g: (n_g,) of the constraints.
+    """
+
+    x: Array
+    g: Array
+
+
+@dataclass(frozen=True)
+class SolverResult:
+    """Where a solver stopped.
+
+    Attributes:
+        x: unknowns.
+        multipliers: at x.
+        objective: value of the objective.
+        iterations: number of iterations.
+        converged: whether the solver says so; it is not taken at its word.
+        status: its own word for how it ended.
+        seconds: wall time in the solver, evaluation included [s].
+        evaluation_seconds: of which in the problem's functions [s].
+    """
+
+    x: Array
+    multipliers: Multipliers
+    objective: float
+    iterations: int
+    converged: bool
+    status: str
+    seconds: float
+    evaluation_seconds: float
+
+
+class Solver(Protocol):
+    """A solver bound to one problem."""
+
+    def solve(
+        self, x0: Array, *, deadline: float, warm: Multipliers | None = None, problem: Problem | None = None
+    ) -> SolverResult:
+        """Solve from ``x0``.
+
+        Args:
+            x0: (n_x,) start.
+            deadline: ``time.monotonic`` value past which the solver stops.
+            warm: multipliers of a neighbouring solution to start from.
+            problem: another problem of the same structure, for its bounds and parameters; None: the bound one.
+
+        Raises:
+            SolverError: the solver itself cannot run.
+        """
+        ...

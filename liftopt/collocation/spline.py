@@ -1,0 +1,141 @@
+"""Uniform clamped cubic B-splines at rest at both ends: basis, mesh, quadrature and the sampling of a trajectory.
+
+The motion of every coordinate is ``q(s) = sum_i B_i(s) c_i`` over the phase ``s = t / T`` in [0, 1] on N equal
+intervals, N + 3 control points. Zero velocity and acceleration at both ends (eq. 19) make the first three control
+points equal, and the last three: N - 1 free ones remain, so the boundary conditions hold by construction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import BSpline
+
+Array = npt.NDArray[np.float64]
+DEGREE = 3
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Where the unknowns act and where the equations hold: what a transcription needs of a space of motions.
+
+    Attributes:
+        phase: (K,) phases of the knots.
+        weights: (K,) quadrature weights.
+        basis: value, first and second derivative by the phase at the knots, (K, n_free) each.
+        control_phase: (n_free,) where each control point acts most.
+        closure_knots: knots at which loop closure is collocated.
+        slope: (m, n_free) map to the hull of the derivative by the phase.
+    """
+
+    phase: Array
+    weights: Array
+    basis: tuple[Array, Array, Array]
+    control_phase: Array
+    closure_knots: npt.NDArray[np.int64]
+    slope: Array
+
+    @staticmethod
+    def at_rest() -> Mesh:
+        """Return the mesh of one posture at rest: one knot, one control point, no motion."""
+        one, none = np.ones((1, 1)), np.zeros((1, 1))
+        return Mesh(np.zeros(1), np.ones(1), (one, none, none), np.zeros(1), np.zeros(1, np.int64), np.zeros((0, 1)))
+
+
+@dataclass(frozen=True)
+class RestToRestSpline:
+    """The spline space on ``intervals`` (N) uniform intervals, with its free control points.
+
+    Attributes:
+        intervals: N, at least 6 so that the two resting ends do not share control points.
+    """
+
+    intervals: int
+
+    @property
+    def n_knots(self) -> int:
+        """Number of collocation knots, N + 1."""
+        return self.intervals + 1
+
+    @property
+    def n_free(self) -> int:
+        """Number of free control points a coordinate, N - 1."""
+        return self.intervals - 1
+
+    @property
+    def phase(self) -> Array:
+        """Phases of the knots, (N + 1,), from 0 to 1."""
+        return np.linspace(0.0, 1.0, self.n_knots)
+
+    @property
+    def quadrature(self) -> Array:
+        """Trapezoid weights over the phase, (N + 1,); they sum to 1."""
+        weights = np.full(self.n_knots, 1.0 / self.intervals)
+        weights[[0, -1]] /= 2
+        return weights
+
+    @property
+    def closure_knots(self) -> npt.NDArray[np.int64]:
+        """Knots at which loop closure is collocated: as many as there are free control points.
+
+        The two resting ends leave N - 1 free control points a coordinate, so closure at all N + 1 knots is
+        over-determined; without knots 1 and N - 1 it is square and well conditioned.
+        """
+        return np.delete(np.arange(self.n_knots), [1, self.n_knots - 2])
+
+    @cached_property
+    def greville(self) -> Array:
+        """Phases (N - 1,) at which each free control point acts most; the first is 0, the last 1."""
+        abscissae = np.array([self._knot_vector[i + 1 : i + 1 + DEGREE].mean() for i in range(self.intervals + 3)])
+        phases = abscissae[2:-2].copy()
+        phases[0], phases[-1] = 0.0, 1.0
+        return phases
+
+    def basis(self, phase: Array, derivative: int = 0) -> Array:
+        """Return the (len(phase), N - 1) values of the free basis functions, or of a derivative by the phase."""
+        spline = BSpline(self._knot_vector, np.eye(self.intervals + 3), DEGREE)
+        values = np.asarray(spline.derivative(derivative)(phase) if derivative else spline(phase), dtype=float)
+        values = values @ self._tied
+        # Exact zeros outside the support keep the sparsity of what is built on it.
+        values[np.abs(values) < 1e-13 * max(1.0, float(np.abs(values).max()))] = 0.0
+        return values
+
+    @cached_property
+    def slope(self) -> Array:
+        """Return the (N - 2, N - 1) map to the control points of the derivative by the phase.
+
+        The derivative is a quadratic spline inside the hull of these, so bounding them bounds the speed at all times.
+        """
+        n = self.intervals + 3
+        difference = np.zeros((n - 1, n))
+        for i in range(n - 1):
+            width = self._knot_vector[i + 4] - self._knot_vector[i + 1]
+            difference[i, i : i + 2] = np.array([-1.0, 1.0]) * DEGREE / width
+        return (difference @ self._tied)[2:-2]
+
+    def mesh(self) -> Mesh:
+        """Return the collocation mesh of this space."""
+        basis = (self.basis(self.phase), self.basis(self.phase, 1), self.basis(self.phase, 2))
+        return Mesh(self.phase, self.quadrature, basis, self.greville, self.closure_knots, self.slope)
+
+    @cached_property
+    def _knot_vector(self) -> Array:
+        inner = np.linspace(0.0, 1.0, self.n_knots)
+        return np.concatenate([np.zeros(DEGREE), inner, np.ones(DEGREE)])
+
+    @cached_property
+    def _tied(self) -> Array:
+        """(N + 3, N - 1): the first three control points are one, the last three are one."""
+        n, free = self.intervals + 3, self.n_free
+        tied = np.zeros((n, free))
+        tied[np.arange(n), np.clip(np.arange(n) - 2, 0, free - 1)] = 1.0
+        return tied
+
+
+def interpolate_linear(values: Array, phase: Array) -> Array:
+    """Return rows of ``values`` (K, m), given at K uniform phases, linear between them, at ``phase`` (n,)."""
+    nodes = np.linspace(0.0, 1.0, len(values))
+    return np.stack([np.interp(phase, nodes, column) for column in values.T], axis=1)

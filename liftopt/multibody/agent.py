@@ -1,0 +1,93 @@
+"""What the optimal-control core knows of the world: agents that hold, and one object that is held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """Limits of an agent's moving joints, in the joint order of its reduced model; all arrays (n,).
+
+    Attributes:
+        q_lower, q_upper: position [rad].
+        velocity: speed, both directions [rad/s].
+        tau_lower, tau_upper: torque, each direction apart [Nm]; ``tau_lower`` is negative.
+    """
+
+    q_lower: Array
+    q_upper: Array
+    velocity: Array
+    tau_lower: Array
+    tau_upper: Array
+
+
+@dataclass(frozen=True)
+class HalfSpace:
+    """The set ``normal . p_world >= offset`` that an agent's grasp point must stay in (eq. 14).
+
+    Attributes:
+        normal: (3,) unit vector, world axes.
+        offset: [m].
+    """
+
+    normal: Array
+    offset: float
+
+
+@dataclass(frozen=True)
+class Agent:
+    """One who holds the object: a fixed-base chain with a point grasp.
+
+    Attributes:
+        name: prefix of its joint names (``"human"``, ``"robot"``).
+        urdf: the very URDF text that the model was loaded from.
+        model: Pinocchio model of that URDF, all joints; the base placement is in its root's fixed joint.
+        pinned: names of the virtual joints held at zero (eq. 13); they are eliminated from the optimisation.
+        grasp_frame: name of the frame that coincides with the object's grasp point.
+        limits: of the joints that are not pinned.
+        posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
+        keep_in: half-space that the grasp point must stay in, or None.
+    """
+
+    name: str
+    urdf: str
+    model: pin.Model
+    pinned: tuple[str, ...]
+    grasp_frame: str
+    limits: JointLimits
+    posture: Array
+    keep_in: HalfSpace | None = None
+
+    @property
+    def moving_joints(self) -> tuple[str, ...]:
+        """Names of the joints that are not pinned, in the model's order."""
+        return tuple(name for name in list(self.model.names)[1:] if name not in self.pinned)
+
+    def reduced(self) -> pin.Model:
+        """Return the model without the pinned joints, which stay at zero."""
+        ids = [self.model.getJointId(name) for name in self.pinned]
+        return pin.buildReducedModel(self.model, ids, np.zeros(self.model.nq))
+
+
+@dataclass(frozen=True)
+class LiftedObject:
+    """The object: one rigid body with a free-flyer and one grasp frame for each agent, in the agents' order.
+
+    Attributes:
+        name: of the object (``"table"``).
+        urdf: the very URDF text that the model was loaded from.
+        model: Pinocchio model of that URDF with a free-flyer root; the body frame is at the centre of mass.
+        grasp_frames: names of the frames on the body, one for each agent.
+    """
+
+    name: str
+    urdf: str
+    model: pin.Model
+    grasp_frames: tuple[str, ...]

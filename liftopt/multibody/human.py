@@ -1,0 +1,105 @@
+"""The human: a 13-DOF right arm on spine and feet (Table 2) for one subject, as a URDF and an agent."""
+
+from __future__ import annotations
+
+from math import radians
+
+import numpy as np
+
+from liftopt.multibody.agent import Agent, HalfSpace, JointLimits
+from liftopt.multibody.anthropometry import link_lengths
+from liftopt.multibody.dh import (
+    ROTATION_WORLD_PAPER,
+    Array,
+    BodyInertia,
+    DHChain,
+    frame_transforms,
+    human_rows,
+)
+from liftopt.multibody.human_bodies import human_bodies
+from liftopt.multibody.human_shapes import human_shapes
+from liftopt.multibody.range_of_motion import RANGES
+from liftopt.multibody.strength import torque_limit
+from liftopt.multibody.subject import Sex, Subject
+from liftopt.multibody.urdf import (
+    HELD,
+    FixedLink,
+    JointBounds,
+    chain_robot,
+    joint_name,
+    link_placements,
+    load_model,
+    shapes_on_links,
+    urdf_text,
+)
+
+__all__ = ["Subject", "human_agent", "human_chain", "human_limits", "human_root"]
+
+NAME, GRASP = "human", "human_grasp"
+VIRTUAL = ("GT1", "GT2", "GT3")
+# Forearm level and half pronated, the hand about 0.43 m ahead at elbow height: the middle of a lift at the waist.
+POSTURE_DEG = {"Q5": 15.0, "Q7": -75.0, "Q8": -80.0}
+
+
+def human_root() -> Array:
+    """Return T_world_root (4, 4): the paper's frame at the feet, in the world."""
+    root = np.eye(4)
+    root[:3, :3] = ROTATION_WORLD_PAPER
+    return root
+
+
+def human_chain(subject: Subject) -> DHChain:
+    """Return Table 2 for ``subject``, the inertia of each body in its row's DH frame.
+
+    The bodies add up to the whole body mass: the pelvis and the legs are on GT3, so that the forces of the three
+    virtual joints are the ground reaction.
+    """
+    lengths = link_lengths(subject)
+    rows = human_rows(lengths.l1, lengths.l2, lengths.l3, lengths.l4, lengths.l5, lengths.l6)
+    bodies = human_bodies(subject)
+    massless = DHChain(NAME, rows, tuple(BodyInertia.zero() for _ in rows))
+    frames = frame_transforms(massless, np.zeros(len(rows)))
+    inertias = []
+    for row, frame in zip(rows, frames, strict=True):
+        world_frame = human_root() @ frame
+        rotation = world_frame[:3, :3].T
+        body = bodies.get(row.name, BodyInertia.zero())
+        inertias.append(body.transformed(rotation, -rotation @ world_frame[:3, 3]).rounded())
+    return DHChain(NAME, rows, tuple(inertias))
+
+
+def human_limits(sex: Sex) -> JointLimits:
+    """Return ranges of motion, speeds and strength of Q1 to Q10, arrays (10,), for a man or a woman."""
+    return JointLimits(
+        q_lower=np.array([radians(item.lower) for item in RANGES]),
+        q_upper=np.array([radians(item.upper) for item in RANGES]),
+        velocity=np.array([item.velocity for item in RANGES]),
+        tau_lower=np.array([torque_limit(item.joint, -1, sex) for item in RANGES]),
+        tau_upper=np.array([torque_limit(item.joint, +1, sex) for item in RANGES]),
+    )
+
+
+def human_agent(subject: Subject) -> Agent:
+    """Return the subject as an agent: feet at the world origin, facing +X, holding at ``human_grasp``.
+
+    The grasp point must stay in front of the base of the spine (eq. 14), which stands at X = 0.
+    """
+    chain, limits = human_chain(subject), human_limits(subject.sex)
+    shapes = shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
+    effort = np.maximum(-limits.tau_lower, limits.tau_upper)
+    bounds = dict.fromkeys(VIRTUAL, HELD) | {
+        item.joint: JointBounds(*map(float, values))
+        for item, *values in zip(RANGES, limits.q_lower, limits.q_upper, effort, limits.velocity, strict=True)
+    }
+    root = FixedLink("human_base", "world", human_root())
+    text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=GRASP))
+    return Agent(
+        name=NAME,
+        urdf=text,
+        model=load_model(text),
+        pinned=tuple(joint_name(NAME, row) for row in VIRTUAL),
+        grasp_frame=GRASP,
+        limits=limits,
+        posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
+        keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.0),
+    )

@@ -1,0 +1,108 @@
+"""The names of ``pinocchio.casadi`` from the extension that was built when liftopt was installed."""
+
+from __future__ import annotations
+
+# The extension needs libcasadi in the process, which this brings.
+import casadi
+import pinocchio
+from pinocchio import (
+    BODY,
+    FIXED_JOINT,
+    JOINT,
+    LOCAL,
+    LOCAL_WORLD_ALIGNED,
+    OP_FRAME,
+    SENSOR,
+    WORLD,
+    Convention,
+    FrameType,
+    ReferenceFrame,
+)
+
+from liftopt.pinocchio_casadi.force_list import StdVec_Force
+from liftopt.pinocchio_casadi.versions import require_same_version
+
+try:
+    import _liftopt_pinocchio_casadi as _extension
+except ImportError as error:
+    raise ImportError(
+        "pinocchio.casadi is not installed, and liftopt's own extension for it cannot be loaded; reinstall liftopt "
+        f"with `pip install --force-reinstall --no-deps .`, which builds it ({error})"
+    ) from error
+
+require_same_version("casadi", casadi.__version__, _extension.casadi_version)
+require_same_version("pin", pinocchio.__version__, _extension.pinocchio_version)
+
+# Only now: these need the extension.
+from _liftopt_pinocchio_casadi import (  # noqa: E402
+    SE3,
+    Data,
+    Force,
+    Frame,
+    Inertia,
+    Motion,
+    StdVec_Frame,
+    StdVec_Inertia,
+    StdVec_Motion,
+    StdVec_SE3,
+    computeFrameJacobian,
+    computeJointJacobians,
+    computeRNEADerivatives,
+    crba,
+    forwardKinematics,
+    framesForwardKinematics,
+    getAcceleration,
+    getFrameAcceleration,
+    getFrameClassicalAcceleration,
+    getFrameJacobian,
+    getFrameVelocity,
+    getJointJacobian,
+    getVelocity,
+    rnea,
+    updateFramePlacement,
+    updateFramePlacements,
+)
+
+from liftopt.pinocchio_casadi.model import Model  # noqa: E402
+
+__all__ = [
+    "BODY",
+    "FIXED_JOINT",
+    "JOINT",
+    "LOCAL",
+    "LOCAL_WORLD_ALIGNED",
+    "OP_FRAME",
+    "SE3",
+    "SENSOR",
+    "WORLD",
+    "Convention",
+    "Data",
+    "Force",
+    "Frame",
+    "FrameType",
+    "Inertia",
+    "Model",
+    "Motion",
+    "ReferenceFrame",
+    "StdVec_Force",
+    "StdVec_Frame",
+    "StdVec_Inertia",
+    "StdVec_Motion",
+    "StdVec_SE3",
+    "computeFrameJacobian",
+    "computeJointJacobians",
+    "computeRNEADerivatives",
+    "crba",
+    "forwardKinematics",
+    "framesForwardKinematics",
+    "getAcceleration",
+    "getFrameAcceleration",
+    "getFrameClassicalAcceleration",
+    "getFrameJacobian",
+    "getFrameVelocity",
+    "getJointJacobian",
+    "getVelocity",
+    "rnea",
+    "updateFramePlacement",
+    "updateFramePlacements",
+]

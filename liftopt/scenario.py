@@ -1,0 +1,264 @@
+"""What is lifted, by whom, from where to where: a TOML file or mapping becomes a checked ``Scenario``.
+
+SI units; radians unless the key says otherwise. The world frame has Z up and X from the human to the robot.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+import tomli_w
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.scenario_schema import Choice, Name, Number, Whole, entries, section
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+SHIPPED = Path(__file__).parent / "scenarios"
+LARGEST_FILE = 1_000_000  # bytes; a scenario has some 30 lines
+
+
+@dataclass(frozen=True, kw_only=True)
+class Human:
+    """The person who lifts."""
+
+    stature: Annotated[float, Number("height of the person", "m", 1.2, 2.2)]
+    mass: Annotated[float, Number("body mass of the person", "kg", 30.0, 200.0)]
+    sex: Annotated[str, Choice("whose segment data to use", ("male", "female"))]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tool:
+    """The gripper on the robot's flange; length and mass 0 stand for the bare flange."""
+
+    length: Annotated[float, Number("flange to grasp point, along the flange's axis", "m", 0.0, 0.6)] = 0.15
+    mass: Annotated[float, Number("mass of the gripper", "kg", 0.0, 10.0)] = 0.4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """The robot that lifts; it faces the person."""
+
+    model: Annotated[str, Choice("which robot", ("sawyer",))]
+    base_height: Annotated[float, Number("height of the robot's base above the floor", "m", 0.0, 2.0)] = 0.915
+    tool: Tool = field(default_factory=Tool)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """The object: a box of even density, held at the two bottom edges that face the person and the robot."""
+
+    mass: Annotated[float, Number("mass of the object", "kg", 0.05, 50.0)]
+    depth: Annotated[float, Number("extent from the human grasp to the robot grasp", "m", 0.1, 2.0)]
+    width: Annotated[float, Number("extent to the side", "m", 0.02, 2.0)]
+    height: Annotated[float, Number("thickness", "m", 0.001, 1.0)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class GraspPose:
+    """Where the level object is at one end of the motion; ``human_distance`` None is "free" in a file."""
+
+    height: Annotated[float, Number("height of both grasp points above the floor", "m", 0.05, 2.2)]
+    human_distance: Annotated[float | None, Number("human grasp ahead of the feet", "m", 0.0, 2.0, word="free")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """From where to where, and how far apart the two stand."""
+
+    standing_distance: Annotated[float, Number("feet to the robot's base", "m", 0.5, 4.0)]
+    start: GraspPose
+    end: GraspPose
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objective:
+    """Weights of the four integrals that are minimised."""
+
+    human_weight: Annotated[float, Number("weight of the human joint torques squared", "", 0.0, 1e6)] = 1.0
+    robot_weight: Annotated[float, Number("weight of the robot joint torques squared", "", 0.0, 1e6)] = 1.0
+    acceleration_weight: Annotated[float, Number("weight of the accelerations squared", "", 0.0, 1e6)] = 0.5
+    force_weight: Annotated[float, Number("weight of the grasp forces squared", "", 0.0, 1e6)] = 0.01
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Limits that belong to the task rather than to an agent."""
+
+    table_pitch_deg: Annotated[float, Number("largest pitch of the object", "deg", 0.0, 60.0)] = 10.0
+    table_yaw_deg: Annotated[float, Number("largest yaw of the object", "deg", 0.0, 60.0)] = 10.0
+    max_grasp_force: Annotated[float, Number("largest grasp force", "N", 0.0, 10_000.0, open_low=True)] = 200.0
+    balance_tolerance: Annotated[float, Number("slack in the object's balance", "N, Nm", 0.0, 100.0)] = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solver:
+    """How the problem is solved."""
+
+    intervals: Annotated[int, Whole("spline intervals N", 6, 400)] = 20
+    starts: Annotated[int, Whole("starts of which the best is kept", 1, 64)] = 4
+    tolerance: Annotated[float, Number("KKT error at which a start has converged", "", 1e-10, 1e-3)] = 1e-6
+    seed: Annotated[int, Whole("seed of the random starts", 0, 2**32 - 1)] = 0
+    time_limit: Annotated[float, Number("wall time of the whole solve", "s", 0.1, 3600.0)] = 50.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scenario:
+    """One lift to be solved. An invalid one cannot be made: every value is checked on construction.
+
+    Raises:
+        InputError: a value has the wrong type or is out of its range, or two values contradict each other.
+    """
+
+    schema: Annotated[int, Choice("version of the scenario format", (1,))]
+    name: Annotated[str, Name("name of the scenario")] = "scenario"
+    duration: Annotated[float, Number("time from start to end", "s", 0.2, 30.0)]
+    human: Human
+    robot: Robot
+    table: Table
+    task: Task
+    objective: Objective = field(default_factory=Objective)
+    limits: Limits = field(default_factory=Limits)
+    solver: Solver = field(default_factory=Solver)
+
+    def __post_init__(self) -> None:
+        for key, kind, _, _ in entries(Scenario):
+            object.__setattr__(self, key, kind.accept(key, getattr(self, key)))
+        weights = section(Objective).plain(self.objective)
+        if not any(weights.values()):
+            raise InputError("objective", weights, "at least one weight must be above 0")
+        for end in ("start", "end"):
+            distance: float | None = getattr(self.task, end).human_distance
+            room = self.task.standing_distance - self.table.depth
+            if (distance or 0.0) >= room:
+                where = f"standing_distance {self.task.standing_distance:g} m, table.depth {self.table.depth:g} m"
+                raise InputError(
+                    f"task.{end}.human_distance",
+                    "free" if distance is None else distance,
+                    f"must be below {room:g} m, or the object reaches behind the robot's base ({where})",
+                )
+
+
+def shipped_scenarios() -> tuple[str, ...]:
+    """Return the names of the scenarios that come with liftopt."""
+    return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
+
+
+def load_scenario(source: str | Path | None = None, overrides: Iterable[str] = ()) -> Scenario:
+    """Return the scenario of a TOML file.
+
+    Args:
+        source: path of the file, or the name of a shipped scenario (a str); None is ``"table5"``.
+        overrides: ``"dotted.key=value"`` each, see ``with_overrides``; later ones win.
+
+    Raises:
+        InputError: the file cannot be read, is not TOML, or does not describe a scenario.
+    """
+    source = "table5" if source is None else source
+    path = SHIPPED / f"{source}.toml" if source in shipped_scenarios() else Path(source)
+    data = _parse(path, _read(path))
+    with suppress(InputError):  # a file name need not be a name
+        data.setdefault("name", Name("file name").accept("name", path.stem))
+    for override in overrides:
+        _set(data, override)
+    return scenario_from_dict(data)
+
+
+def scenario_from_dict(data: Mapping[str, Any]) -> Scenario:
+    """Return the scenario that a mapping, laid out like the TOML file, describes.
+
+    Raises:
+        InputError: naming the key that is missing, unknown or wrong.
+    """
+    if "schema" in data:  # first: the keys of another version would all be unknown
+        entries(Scenario)[0].kind.accept("schema", data["schema"])
+    scenario: Scenario = section(Scenario).accept("", data)
+    return scenario
+
+
+def with_overrides(scenario: Scenario, overrides: Iterable[str]) -> Scenario:
+    """Return the scenario with some entries changed.
+
+    Args:
+        scenario: left as it is.
+        overrides: ``"table.mass=3"``, ``"task.end.human_distance=free"``: the value is a TOML value, and what is none
+            is taken as a string.
+
+    Raises:
+        InputError: an override is malformed or its result is not a scenario.
+    """
+    data = scenario_to_dict(scenario)
+    for override in overrides:
+        _set(data, override)
+    return scenario_from_dict(data)
+
+
+def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
+    """Return the scenario as nested plain values, all defaults filled in."""
+    return section(Scenario).plain(scenario)
+
+
+def scenario_to_toml(scenario: Scenario) -> str:
+    """Return the scenario as a TOML file, all defaults filled in; reading it gives an equal scenario."""
+    return tomli_w.dumps(scenario_to_dict(scenario))
+
+
+def _read(path: Path) -> str:
+    shown = str(path)
+    try:
+        if path.exists() and not path.is_file():  # a folder, or a device that might never end
+            raise InputError(shown, NO_VALUE, "is not a file; a scenario is a TOML file")
+        with path.open("rb") as file:
+            raw = file.read(LARGEST_FILE + 1)
+    except FileNotFoundError:
+        names = ", ".join(shipped_scenarios())
+        raise InputError(shown, NO_VALUE, f"no such file, nor a shipped scenario ({names})") from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(shown, NO_VALUE, f"cannot be read: {reason}") from None
+    if len(raw) > LARGEST_FILE:
+        raise InputError(shown, NO_VALUE, f"is larger than {LARGEST_FILE} bytes; a scenario is a short TOML file")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(shown, NO_VALUE, f"is not UTF-8 text (byte {error.start})") from None
+    if "\0" in text:
+        raise InputError(shown, NO_VALUE, "is a binary file; a scenario is a TOML file")
+    return text
+
+
+def _parse(path: Path, text: str) -> dict[str, Any]:
+    try:
+        return dict(tomllib.loads(text))
+    except (ValueError, RecursionError) as error:  # ValueError: TOMLDecodeError, or an integer of too many digits
+        raise InputError(str(path), NO_VALUE, f"is not valid TOML: {error}") from None
+
+
+def _set(data: dict[str, Any], override: str) -> None:
+    key, equals, text = override.partition("=")
+    parts = [part.strip() for part in key.split(".")]
+    if not equals or not all(parts):
+        raise InputError("--set", override, "must be KEY=VALUE with a dotted key, for example table.mass=3")
+    for depth, part in enumerate(parts[:-1], start=1):
+        inner = data.get(part, {})
+        if not isinstance(inner, dict):
+            raise InputError(".".join(parts), NO_VALUE, f"{'.'.join(parts[:depth])} is a value, not a section")
+        data[part] = inner
+        data = inner
+    data[parts[-1]] = _value(text.strip())
+
+
+def _value(text: str) -> Any:
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return parsed["value"] if len(parsed) == 1 else text  # a line break could smuggle in a second key

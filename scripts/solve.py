@@ -1,0 +1,8 @@
+"""Solve one lift: ``python scripts/solve.py ARGS`` is ``liftopt solve ARGS``."""
+
+import sys
+
+from liftopt.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main(["solve", *sys.argv[1:]]))

@@ -1,0 +1,69 @@
+"""What several test modules share."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from liftopt.scenario import load_scenario
+
+
+def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:
+    knots, n = 5, joints + 3
+    names = tuple(f"{name}_GT{i}" for i in (1, 2, 3)) + tuple(f"{name}_Q{i}" for i in range(1, joints + 1))
+    tau = np.zeros((knots, n))
+    tau[:, :3] = 1000.0  # body weight in the pinned joints: must not turn up among the joints
+    tau[:, 4] = [0.0, 20.0, -30.0, 10.0, 0.0]
+    limits = SimpleNamespace(tau_lower=np.full(joints, -100.0), tau_upper=np.full(joints, 40.0))
+    q = np.zeros((knots, n))
+    q[:, 4] = np.radians([0.0, 10.0, 20.0, 30.0, 45.0])
+    return SimpleNamespace(
+        name=name,
+        joint_names=names,
+        moving=np.array([False] * 3 + [True] * joints),
+        q=q,
+        tau=tau,
+        limits=limits,
+        grasp_force=force,
+        grasp_position=np.tile(grasp, (knots, 1)),
+    )
+
+
+@pytest.fixture
+def solution() -> SimpleNamespace:
+    """Return a stand-in for a solution whose every figure can be checked by hand: 5 knots in 2 s, 12 N + 8 N up."""
+    scenario = load_scenario()
+    human_force = np.tile([5.0, 0.0, 12.0], (5, 1))
+    robot_force = np.tile([-3.0, 0.0, 8.0], (5, 1))
+    human_force[2] = [9.0, 0.0, 40.0]
+    ground = np.tile([0.0, 0.0, 75.0 * 9.81], (5, 1))
+    ground[3, 2] *= 1.1
+    moment = np.zeros((5, 3))
+    moment[1] = [3.0, -4.0, 0.0]
+    check = SimpleNamespace(name="closure", value=2e-9, limit=1e-6, unit="m", where="human at t = 0.40 s", passed=True)
+    return SimpleNamespace(
+        scenario=scenario,
+        status="solved",
+        solved=True,
+        time=np.linspace(0.0, 2.0, 5),
+        agents=(
+            _agent("human", 10, human_force, (0.4, 0.0, 0.9)),
+            _agent("robot", 7, robot_force, (0.85, 0.0, 0.9)),
+        ),
+        ground_reaction_force=ground,
+        ground_reaction_moment=moment,
+        objective=350.0,
+        objective_terms={"human": 200.0, "robot": 100.0, "acceleration": 90.0, "force": 500.0},
+        objective_weights={"human": 1.0, "robot": 1.0, "acceleration": 0.5, "force": 0.01},
+        iterations=31,
+        intervals=20,
+        seconds={"solve": 0.31, "evaluation": 0.05, "setup": 1.2, "total": 1.7},
+        starts=(
+            SimpleNamespace(name="naive", status="solved", objective=350.0, iterations=31, seconds=0.31),
+            SimpleNamespace(name="ik 1", status="iteration limit", objective=np.nan, iterations=300, seconds=2.0),
+        ),
+        verification=SimpleNamespace(checks=(check,), passed=True, worst=check, kkt_error=4e-7),
+        notes=("mesh refined to N = 40",),
+    )

@@ -1,0 +1,27 @@
+"""Every number of the human model is stated with a source. Oracle: the limits and bodies of the loaded URDF."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from liftopt.multibody.human import Subject, human_agent
+from liftopt.multibody.provenance import subject_quantities
+
+SUBJECT = Subject(1.7, 68.0, "female")
+
+
+def test_states_the_limits_that_the_agent_has():
+    limits, stated = human_agent(SUBJECT).limits, subject_quantities(SUBJECT)
+    torques = [item.value for item in stated if item.group == "strength"]
+    np.testing.assert_array_equal(np.reshape(torques, (10, 2)), np.c_[limits.tau_lower, limits.tau_upper])
+    angles = [item.value for item in stated if item.group == "range of motion"]
+    np.testing.assert_allclose(np.radians(angles).reshape(10, 2), np.c_[limits.q_lower, limits.q_upper])
+    np.testing.assert_array_equal([item.value for item in stated if item.group == "speed"], limits.velocity)
+
+
+def test_states_masses_that_sum_to_the_body_and_a_source_for_everything():
+    stated = subject_quantities(SUBJECT)
+    assert sum(item.value for item in stated if item.name.endswith("mass")) == pytest.approx(68.0, abs=1e-9)
+    assert [item.name for item in stated if item.group == "length"] == ["L1", "L2", "L3", "L4", "L5", "L6"]
+    assert all(item.source.citation and item.source.confidence for item in stated)
