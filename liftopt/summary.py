@@ -16,7 +16,8 @@ import numpy.typing as npt
 from liftopt.scenario import scenario_to_dict
 
 if TYPE_CHECKING:
-    from liftopt.solution import AgentTrajectory, Solution
+    from liftopt.solution import Solution
+    from liftopt.trajectory import AgentTrajectory
 
 Array = npt.NDArray[np.float64]
 
@@ -56,13 +57,13 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         solution: solved or not.
         out: folder that it was written to, if any.
     """
-    solved = bool(solution.solved and solution.verification.passed)
+    solved = bool(solution.solved)
     return {
         "name": solution.scenario.name,
         "status": solution.status,
         "solved": solved,
         "exit_status": 0 if solved else 3,
-        "reason": None if solved else _reason(solution),
+        "reason": None if solved else solution.status,
         "out": None if out is None else str(out),
         "scenario": scenario_to_dict(solution.scenario),
         "joints": {agent.name: _joints(solution, agent) for agent in solution.agents},
@@ -77,6 +78,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
             "starts": [
                 {
                     "name": start.name,
+                    "kept": start.name == solution.kept_start,
                     "status": start.status,
                     "objective": _number(start.objective),
                     "iterations": int(start.iterations),
@@ -197,16 +199,6 @@ def _verification(solution: Solution) -> dict[str, Any]:
             for check in verification.checks
         ],
     }
-
-
-def _reason(solution: Solution) -> str:
-    if not solution.solved:
-        return solution.status
-    if solution.verification.kkt_error > solution.scenario.solver.tolerance:
-        return f"KKT error {solution.verification.kkt_error:.3g}, allowed {solution.scenario.solver.tolerance:.3g}"
-    worst = solution.verification.worst
-    where = f" ({worst.where})" if worst.where else ""
-    return f"verification failed: {worst.name} {worst.value:.3g} {worst.unit}, allowed {worst.limit:.3g}{where}"
 
 
 def _peak(values: Array, time: Array, unit: str) -> dict[str, Any]:

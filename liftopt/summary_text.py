@@ -14,6 +14,7 @@ WIDTH = 80
 NEAR_LIMIT = 0.8  # share of a torque limit from which it is marked
 BLOCKS = "▁▂▃▄▅▆▇█"
 ASCII_BLOCKS = "_.-~=+*#"
+AT_KNOTS, BETWEEN = " at the knots", " between knots"
 
 
 def print_summary(summary: dict[str, Any], console: Console) -> None:
@@ -24,7 +25,7 @@ def print_summary(summary: dict[str, Any], console: Console) -> None:
         _load_share(summary["load_share"], console.options.ascii_only),
         _forces(summary),
         _objective(summary["objective"]),
-        _starts(summary["solver"], summary["objective"]["total"]),
+        _starts(summary["solver"]),
         _effort(summary["solver"]),
         _verification(summary["verification"]),
     ]
@@ -158,11 +159,11 @@ def _objective(objective: dict[str, Any]) -> Table:
     return table
 
 
-def _starts(solver: dict[str, Any], kept: float | None) -> Table:
+def _starts(solver: dict[str, Any]) -> Table:
     table = _table("Starts (* kept)", "<", "<start", "<status", "objective", "iterations", "[s]")
     for start in solver["starts"]:
         table.add_row(
-            "*" if kept is not None and start["objective"] == kept else "",
+            "*" if start["kept"] else "",
             escape(start["name"]),
             escape(start["status"]),
             _general(start["objective"]),
@@ -179,19 +180,27 @@ def _effort(solver: dict[str, Any]) -> str:
 
 def _verification(verification: dict[str, Any]) -> Table:
     verdict = "all passed" if verification["passed"] else "FAILED"
-    table = _table(f"Verification: {verdict}", "<check", "value", "limit", "<unit", "<", "<worst at")
+    table = _table(f"Verification: {verdict}", "<check", "<unit", "at knots", "between", "allowed", "<", "<worst at")
+    rows: dict[str, dict[str, dict[str, Any]]] = {}
     for check in verification["checks"]:
+        between = check["name"].endswith(BETWEEN)
+        name = check["name"].removesuffix(BETWEEN).removesuffix(AT_KNOTS)
+        rows.setdefault(name, {})["between" if between else "knots"] = check
+    for name, pair in rows.items():
+        checks = [pair[place] for place in ("knots", "between") if place in pair]
+        allowed = [_short(check["limit"]) for check in checks if check["limit"] is not None]
         table.add_row(
-            escape(check["name"]),
-            _short(check["value"]),
-            _short(check["limit"]),
-            escape(check["unit"]),
-            "ok" if check["passed"] else "[bold red]FAILED[/bold red]",
-            escape(check["where"]),
+            escape(name),
+            escape(checks[0]["unit"]),
+            *(_short(pair[place]["value"]) if place in pair else "" for place in ("knots", "between")),
+            ", ".join(allowed) or "-",
+            "ok" if all(check["passed"] for check in checks) else "[bold red]FAILED[/bold red]",
+            escape(next((check["where"] for check in checks if not check["passed"]), checks[0]["where"])),
         )
     error, tolerance = verification["kkt_error"], verification["kkt_tolerance"]
     reached = error is not None and error <= tolerance
-    table.add_row("KKT error", _short(error), _short(tolerance), "", "ok" if reached else "[bold red]FAILED[/bold red]")
+    state = "ok" if reached else "[bold red]FAILED[/bold red]"
+    table.add_row("KKT error", "", _short(error), "", _short(tolerance), state)
     return table
 
 

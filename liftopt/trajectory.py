@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.agent import Agent, JointLimits, LiftedObject
 
 Array = npt.NDArray[np.float64]
 
@@ -30,6 +30,7 @@ class AgentTrajectory:
         grasp_force: (K, 3) force on the object, world axes [N].
         grasp_position: (K, 3) the agent's grasp point in the world [m].
         ground_force, ground_moment: (K, 3) reaction of the ground on the agent at its base point, world axes.
+        limits: of the moving joints.
     """
 
     name: str
@@ -43,6 +44,7 @@ class AgentTrajectory:
     grasp_position: Array
     ground_force: Array
     ground_moment: Array
+    limits: JointLimits
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ class ObjectTrajectory:
     Attributes:
         name: of the object.
         pose: (K, 6) centre of mass in the world [m], then roll, pitch, yaw [rad] with R = Rx Ry Rz.
+        pose_velocity, pose_acceleration: (K, 6) its rates.
         quaternion: (K, 4) x y z w.
         velocity, acceleration: (K, 6) linear then angular, world axes, at the centre of mass.
         grasp_position: (K, agents, 3) its grasp points in the world [m].
@@ -60,6 +63,8 @@ class ObjectTrajectory:
 
     name: str
     pose: Array
+    pose_velocity: Array
+    pose_acceleration: Array
     quaternion: Array
     velocity: Array
     acceleration: Array
@@ -77,19 +82,19 @@ def agent_trajectory(agent: Agent, q: Array, v: Array, a: Array, force: Array) -
     tau, point, ground_force, ground_moment = np.zeros_like(full_q), *np.zeros((3, len(q), 3))
     p_world_base = model.jointPlacements[1].translation
     for k in range(len(q)):
-        free = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
-        # The wrench that the first joint transmits holds the whole agent against gravity and its own motion.
-        root = data.oMi[1].act(data.f[1])
         jacobian = pin.computeFrameJacobian(model, data, full_q[k], frame, pin.LOCAL_WORLD_ALIGNED)[:3]
         pin.forwardKinematics(model, data, full_q[k])
         point[k] = pin.updateFramePlacement(model, data, frame).translation
+        free = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
+        # The wrench that the first joint transmits holds the whole agent against gravity and its own motion.
+        root = data.oMi[1].act(data.f[1])
         tau[k] = free + jacobian.T @ force[k]
         ground_force[k] = root.linear + force[k]
         ground_moment[k] = root.angular - np.cross(p_world_base, root.linear)
         ground_moment[k] += np.cross(point[k] - p_world_base, force[k])
     return AgentTrajectory(
         agent.name, tuple(list(model.names)[1:]), moving, full_q, full_v, full_a, tau, np.asarray(force, dtype=float),
-        point, ground_force, ground_moment,
+        point, ground_force, ground_moment, agent.limits,
     )  # fmt: skip
 
 
@@ -119,7 +124,7 @@ def object_trajectory(
         velocity[k] = [*xdot[k, :3], *(rotation @ v[3:])]
         acceleration[k] = [*xddot[k, :3], *(rotation @ a[3:])]
         wrench[k] = [*(rotation @ generalized[:3]), *generalized[3:]]
-    return ObjectTrajectory(held.name, x, quaternion, velocity, acceleration, points, wrench)
+    return ObjectTrajectory(held.name, x, xdot, xddot, quaternion, velocity, acceleration, points, wrench)
 
 
 def free_flyer_state(x: Array, xdot: Array, xddot: Array) -> tuple[Array, Array, Array]:

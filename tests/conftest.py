@@ -64,6 +64,7 @@ def solution() -> SimpleNamespace:
             SimpleNamespace(name="naive", status="solved", objective=350.0, iterations=31, seconds=0.31),
             SimpleNamespace(name="ik 1", status="iteration limit", objective=np.nan, iterations=300, seconds=2.0),
         ),
+        kept_start="naive",
         verification=SimpleNamespace(checks=(check,), passed=True, worst=check, kkt_error=4e-7),
         notes=("mesh refined to N = 40",),
     )

@@ -179,4 +179,5 @@ def _fill(pattern: Pattern, values: Sequence[Any]) -> Any:
 
 
 def _sparsity(matrix: sp.csc_matrix) -> Any:
-    return ca.Sparsity(*matrix.shape, matrix.indptr.tolist(), matrix.indices.tolist())
+    rows, columns = matrix.shape
+    return ca.Sparsity(rows, columns, matrix.indptr.tolist(), matrix.indices.tolist())

@@ -28,7 +28,8 @@ class Block:
     """Rows of one constraint of one agent or the object.
 
     Attributes:
-        name: ``"closure"`` (6), ``"torque"`` (2), ``"keep_in"`` (4), ``"grasp_force"``, ``"balance"`` (7), ``"velocity"``.
+        name: ``"closure"`` (6), ``"torque"`` (2), ``"keep_in"`` (4), ``"grasp_force"``, ``"balance"`` (7),
+            ``"velocity"``.
         who: agent or object.
         rows: where in g.
         labels: meaning of the rows at one knot; they repeat knot by knot.

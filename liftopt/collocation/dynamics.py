@@ -53,7 +53,8 @@ class Topology:
     @property
     def parameters(self) -> Array:
         """Values (p,) of the entries that are not structurally zero: what a kernel takes."""
-        return self.entries[self.entries != 0.0]
+        values: Array = self.entries[self.entries != 0.0]
+        return values
 
     def signature(self) -> str:
         """Return a digest of all that a kernel is generated from; equal signatures share a kernel."""
@@ -100,7 +101,8 @@ def agent_functions(topology: Topology) -> KnotFunctions:
     """Return the functions of an agent: y = (q, q', q'', f), c = (tau, p_world_grasp, f . f).
 
     ``tau = RNEA(q, v, a) - (-J^T f)``: f (3,) is the force the agent exerts on the object, world axes, so its
-    reaction loads the arm at the grasp frame (third term of eq. 1). n torques [Nm], then 3 coordinates [m], then the squared force [N^2].
+    reaction loads the arm at the grasp frame (third term of eq. 1). n torques [Nm], then 3 coordinates [m], then the
+    squared force [N^2].
     """
     import casadi as ca
 
@@ -200,8 +202,8 @@ def _symbolic_model(topology: Topology) -> tuple[Any, Any, Any]:
     for j in range(1, topology.model.njoints):
         translation, mass, lever, lower = entries[at : at + 3], entries[at + 3], entries[at + 4 : at + 7], at + 7
         inertia = ca.SX(3, 3)
-        for k, (r, col) in enumerate((r, col) for r in range(3) for col in range(r + 1)):
-            inertia[r, col] = inertia[col, r] = entries[lower + k]
+        for k, (row, col) in enumerate((r, c) for r in range(3) for c in range(r + 1)):
+            inertia[row, col] = inertia[col, row] = entries[lower + k]
         rotation = ca.SX(ca.sparsify(ca.DM(clean_rotation(topology.model.jointPlacements[j].rotation))))
         model.jointPlacements[j] = cpin.SE3(rotation, translation)
         model.inertias[j] = cpin.Inertia(mass, lever, inertia)

@@ -127,7 +127,7 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
     compiler = find_compiler()
     say("building the equations of motion")
     functions = {key: builder(topology) for key, (builder, topology) in missing.items()}
-    interpreted = {key: Kernel(*(getattr(f, role) for role in ROLES), compiled=False) for key, f in functions.items()}
+    interpreted = {key: _kernel([getattr(f, role) for role in ROLES], compiled=False) for key, f in functions.items()}
     if compiler is None:
         say("no C compiler found: CasADi's virtual machine evaluates the dynamics, several times slower")
         return interpreted
@@ -202,4 +202,9 @@ def _load(path: Path, key: str) -> Kernel | None:
         roles = [ca.external(_symbol(role, key), str(path)) for role in ROLES]
     except (OSError, RuntimeError):
         return None
-    return Kernel(*roles, compiled=True)
+    return _kernel(roles, compiled=True)
+
+
+def _kernel(functions: Sequence[Any], compiled: bool) -> Kernel:
+    value, gradient, jacobian, curvature, squares = functions
+    return Kernel(value, gradient, jacobian, curvature, squares, compiled)

@@ -65,7 +65,8 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
 
     lower, upper = problem.bounds()
     free = upper > lower
-    all_lower, all_upper = np.concatenate([lower[free], constraints.lower]), np.concatenate([upper[free], constraints.upper])
+    all_lower = np.concatenate([lower[free], constraints.lower])
+    all_upper = np.concatenate([upper[free], constraints.upper])
     values, lam = np.concatenate([x[free], g]), np.concatenate([multipliers.x[free], multipliers.g])
     bounded = all_upper > all_lower
     products = [
@@ -74,9 +75,10 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
     ]
     s_d = max(MULTIPLIER_SCALE, float(np.abs(lam).mean())) / MULTIPLIER_SCALE
     s_c = max(MULTIPLIER_SCALE, float(np.abs(lam[bounded]).mean())) / MULTIPLIER_SCALE
+    outside = np.abs(x - np.clip(x, lower, upper)).max()
     return KktError(
         stationarity=float(np.abs(gradient[free]).max()) / s_d,
-        violation=float(max(0.0, (all_lower - values).max(), (values - all_upper).max(), np.abs(x - np.clip(x, lower, upper)).max())),
+        violation=float(max(0.0, (all_lower - values).max(), (values - all_upper).max(), outside)),
         complementarity=float(max(p.max(initial=0.0) for p in products)) / s_c,
         objective=objective,
     )

@@ -79,9 +79,7 @@ class Problem:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The agents and the object as the assembly takes them."""
-        return tuple(
-            Part(kernel, self.layout.select(i)) for i, kernel in enumerate(self.team.kernels)
-        )
+        return tuple(Part(kernel, self.layout.select(i)) for i, kernel in enumerate(self.team.kernels))
 
     @cached_property
     def constraints(self) -> Constraints:

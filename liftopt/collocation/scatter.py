@@ -34,7 +34,11 @@ class Pattern:
 
 
 def jacobian_pattern(
-    blocks: Sequence[Any], selects: Sequence[sp.csc_matrix], weights: Array, combine: sp.csc_matrix, linear: sp.csc_matrix
+    blocks: Sequence[Any],
+    selects: Sequence[sp.csc_matrix],
+    weights: Array,
+    combine: sp.csc_matrix,
+    linear: sp.csc_matrix,
 ) -> Pattern:
     """Return the pattern of ``G diag(dc/dy) S + A``; values are the nonzeros of all dc/dy, part by part, knot by knot.
 
@@ -42,7 +46,8 @@ def jacobian_pattern(
         blocks: CasADi sparsity of dc/dy of each part.
         selects: S of each part.
         weights: (K,), for the number of knots.
-        combine, linear: G and A.
+        combine: G.
+        linear: A.
     """
     rows, cols, sources, values = [], [], [], []
     first_output = first_value = 0
@@ -71,9 +76,7 @@ def jacobian_pattern(
     )  # fmt: skip
 
 
-def hessian_pattern(
-    triangles: Sequence[Sequence[Any]], selects: Sequence[sp.csc_matrix], weights: Array
-) -> Pattern:
+def hessian_pattern(triangles: Sequence[Sequence[Any]], selects: Sequence[sp.csc_matrix], weights: Array) -> Pattern:
     """Return the pattern of the upper triangle of ``sum S^T H_y S``.
 
     Values are, part by part, the upper nonzeros of each matrix that adds to H_y, knot by knot, and then n_y diagonal
@@ -112,7 +115,8 @@ def hessian_pattern(
         sources.append(entry[at][keep])
         values.append(value[keep])
         first_value += given + n_y
-    return _pattern(*(np.concatenate(part) for part in (rows, cols, sources, values)), (n_x, n_x), first_value)
+    row, col, source, value = (np.concatenate(part) for part in (rows, cols, sources, values))
+    return _pattern(row, col, source, value, (n_x, n_x), first_value)
 
 
 def _expand(starts: Index, indices: Index, data: Array, wanted: Index) -> tuple[Index, Index, Array]:

@@ -27,7 +27,7 @@ Where the extension differs from upstream:
 - Arguments may be anything that ``casadi.SX`` takes (numbers, NumPy arrays), not only SX; attributes that upstream
   lets one assign but that are results (``data.tau``) are read-only.
 - ``StdVec_Force`` is a Python list; a list of forces is taken for it. The sequences of a model and of a data have
-  fixed length and take integers, not slices.
+  fixed length and take integers, not slices. Of a frame, assign the placement, not the whole.
 - ``SE3()``, ``Motion()``, ``Force()`` and ``Inertia()`` are the identity or zero, not uninitialised.
 - Wrong sizes and a data of another model raise ValueError, indices out of range IndexError, where upstream may
   read out of bounds.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 # The extension needs libcasadi in the process, which this brings.
 import casadi
-import pinocchio
 from pinocchio import (
     BODY,
     FIXED_JOINT,
@@ -18,6 +17,7 @@ from pinocchio import (
     FrameType,
     ReferenceFrame,
 )
+from pinocchio.pinocchio_pywrap_default import __version__ as _pinocchio_version
 
 from liftopt.pinocchio_casadi.force_list import StdVec_Force
 from liftopt.pinocchio_casadi.versions import require_same_version
@@ -30,8 +30,8 @@ except ImportError as error:
         f"with `pip install --force-reinstall --no-deps .`, which builds it ({error})"
     ) from error
 
-require_same_version("casadi", casadi.__version__, _extension.casadi_version)
-require_same_version("pin", pinocchio.__version__, _extension.pinocchio_version)
+require_same_version("casadi", casadi.CasadiMeta.version(), _extension.casadi_version)
+require_same_version("pin", _pinocchio_version, _extension.pinocchio_version)
 
 # Only now: these need the extension.
 from _liftopt_pinocchio_casadi import (  # noqa: E402

@@ -84,7 +84,7 @@ class Ipopt:
 
     def _build(self, warm: bool) -> Any:
         nlp, options = self.problem.nlp, self.options
-        ipopt: dict[str, object] = dict(
+        ipopt: dict[str, Any] = dict(
             print_level=0,
             sb="yes",
             # IPOPT measures errors of the scaled objective, and averages multipliers over more entries than we do.
@@ -127,7 +127,7 @@ class Ipopt:
         )
 
 
-class _Deadline(ca.Callback):  # type: ignore[misc]
+class _Deadline(ca.Callback):
     """Stops IPOPT between iterations once the time is over; IPOPT's own limit cannot change between solves."""
 
     def __init__(self, n_x: int, n_g: int, n_p: int) -> None:

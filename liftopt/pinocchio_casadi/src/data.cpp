@@ -5,10 +5,10 @@
 // A Data copies what it needs of its Model, so either may outlive the other.
 void expose_data(py::module_ & module)
 {
-  expose_sequence<decltype(Data::v)>(module, "StdVec_Motion");
+  expose_assignable_sequence<decltype(Data::v)>(module, "StdVec_Motion");
 
-  auto data = py::class_<Data>(module, "Data", "Results of the algorithms on one model.");
-  data.def(py::init<const Model &>(), py::arg("model"))
+  py::class_<Data>(module, "Data", "Results of the algorithms on one model.")
+    .def(py::init<const Model &>(), py::arg("model"))
     .def_readonly("oMi", &Data::oMi)
     .def_readonly("oMf", &Data::oMf)
     .def_readonly("liMi", &Data::liMi)
@@ -19,7 +19,4 @@ void expose_data(py::module_ & module)
     .def_property_readonly("M", [](const Data & self) { return to_sx(self.M); })
     .def_property_readonly("dtau_dq", [](const Data & self) { return to_sx(self.dtau_dq); })
     .def_property_readonly("dtau_dv", [](const Data & self) { return to_sx(self.dtau_dv); });
-
-  const auto model = py::reinterpret_borrow<py::class_<Model>>(module.attr("Model"));
-  py::class_<Model>(model).def("createData", [](const Model & self) { return Data(self); });
 }

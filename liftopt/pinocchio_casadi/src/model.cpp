@@ -7,6 +7,9 @@
 
 namespace
 {
+  constexpr int any_frame =
+    pinocchio::JOINT | pinocchio::FIXED_JOINT | pinocchio::BODY | pinocchio::OP_FRAME | pinocchio::SENSOR;
+
   template<typename Items>
   py::list to_list(const Items & items)
   {
@@ -14,6 +17,13 @@ namespace
     for (const auto & item : items)
       list.append(item);
     return list;
+  }
+
+  // The double-precision module's own vector types, as upstream's casadi module returns them.
+  template<typename Items>
+  auto pinocchio_vector(Items Model::* member, const char * type)
+  {
+    return [member, type](const Model & self) { return pinocchio_attribute(type)(to_list(self.*member)); };
   }
 
   void expose_frame(py::module_ & module)
@@ -48,8 +58,12 @@ namespace
   void set_frames(Model & model, const py::sequence & frames)
   {
     model.frames.clear();
-    for (const py::handle frame : frames)
-      model.frames.push_back(frame.cast<const Frame &>());
+    for (const py::handle item : frames)
+    {
+      const auto & frame = item.cast<const Frame &>();
+      check_index(static_cast<long long>(frame.parentJoint), model.njoints, "parent_joint");
+      model.frames.push_back(frame);
+    }
     model.nframes = static_cast<int>(model.frames.size());
   }
 } // namespace
@@ -57,8 +71,9 @@ namespace
 void expose_model(py::module_ & module)
 {
   expose_frame(module);
-  expose_sequence<decltype(Model::inertias)>(module, "StdVec_Inertia");
-  expose_sequence<decltype(Model::jointPlacements)>(module, "StdVec_SE3");
+  expose_assignable_sequence<decltype(Model::inertias)>(module, "StdVec_Inertia");
+  expose_assignable_sequence<decltype(Model::jointPlacements)>(module, "StdVec_SE3");
+  // A whole frame cannot be assigned: it might name a joint that the model does not have.
   expose_sequence<decltype(Model::frames)>(module, "StdVec_Frame");
 
   module.def("_supported_joints", [] { return to_list(supported_joints()); });
@@ -72,7 +87,6 @@ void expose_model(py::module_ & module)
     .def_readonly("nq", &Model::nq)
     .def_readonly("nv", &Model::nv)
     .def_readonly("njoints", &Model::njoints)
-    .def_readonly("nbodies", &Model::nbodies)
     .def_readonly("nframes", &Model::nframes)
     .def_readonly("inertias", &Model::inertias)
     .def_readonly("jointPlacements", &Model::jointPlacements)
@@ -81,20 +95,25 @@ void expose_model(py::module_ & module)
     .def_property(
       "armature", [](const Model & self) { return to_sx(self.armature); },
       [](Model & self, const SX & value) { self.armature = to_tangent(self, value, "armature"); })
-    .def_property_readonly(
-      "names", [](const Model & self) { return pinocchio_attribute("StdVec_StdString")(to_list(self.names)); })
-    .def_property_readonly(
-      "parents", [](const Model & self) { return pinocchio_attribute("StdVec_Index")(to_list(self.parents)); })
-    .def_property_readonly(
-      "idx_qs", [](const Model & self) { return pinocchio_attribute("StdVec_int")(to_list(self.idx_qs)); })
-    .def_property_readonly(
-      "nqs", [](const Model & self) { return pinocchio_attribute("StdVec_int")(to_list(self.nqs)); })
-    .def_property_readonly(
-      "idx_vs", [](const Model & self) { return pinocchio_attribute("StdVec_int")(to_list(self.idx_vs)); })
-    .def_property_readonly(
-      "nvs", [](const Model & self) { return pinocchio_attribute("StdVec_int")(to_list(self.nvs)); })
-    .def("getJointId", [](const Model & self, const std::string & name) { return self.getJointId(name); }, py::arg("name"))
+    .def_property_readonly("names", pinocchio_vector(&Model::names, "StdVec_StdString"))
+    .def_property_readonly("parents", pinocchio_vector(&Model::parents, "StdVec_Index"))
+    .def_property_readonly("idx_qs", pinocchio_vector(&Model::idx_qs, "StdVec_int"))
+    .def_property_readonly("nqs", pinocchio_vector(&Model::nqs, "StdVec_int"))
+    .def_property_readonly("idx_vs", pinocchio_vector(&Model::idx_vs, "StdVec_int"))
+    .def_property_readonly("nvs", pinocchio_vector(&Model::nvs, "StdVec_int"))
+    .def("createData", [](const Model & self) { return Data(self); })
+    .def("getJointId", &Model::getJointId, py::arg("name"))
     .def("existJointName", &Model::existJointName, py::arg("name"))
-    .def("getFrameId", [](const Model & self, const std::string & name) { return self.getFrameId(name); }, py::arg("name"))
-    .def("existFrame", [](const Model & self, const std::string & name) { return self.existFrame(name); }, py::arg("name"));
+    .def(
+      "getFrameId",
+      [](const Model & self, const std::string & name, int type) {
+        return self.getFrameId(name, static_cast<pinocchio::FrameType>(type));
+      },
+      py::arg("name"), py::arg("type") = any_frame)
+    .def(
+      "existFrame",
+      [](const Model & self, const std::string & name, int type) {
+        return self.existFrame(name, static_cast<pinocchio::FrameType>(type));
+      },
+      py::arg("name"), py::arg("type") = any_frame);
 }

@@ -1,0 +1,68 @@
+"""A vector of unknowns as a motion: every agent and the object at any phases, by Pinocchio in double precision."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
+from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What everybody does at K times.
+
+    Attributes:
+        time: (K,) [s].
+        agents: in the team's order.
+        held: the object.
+    """
+
+    time: Array
+    agents: tuple[AgentTrajectory, ...]
+    held: ObjectTrajectory
+
+
+def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array) -> Motion:
+    """Return the motion that the unknowns ``x`` stand for at ``phase`` (K,) in [0, 1]."""
+    control, force = problem.unpack(x)
+    period, layout = problem.task.duration, problem.layout
+    q, v, a = (spline.basis(phase, order) @ control / period**order for order in range(3))
+    forces = interpolate_linear(force, phase)
+    agents = []
+    for i, agent in enumerate(problem.team.agents):
+        own = layout.columns(i)
+        agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, layout.force_columns(i)]))
+    own = layout.columns(layout.n_agents)
+    held = object_trajectory(problem.team.held, q[:, own], v[:, own], a[:, own], forces)
+    return Motion(phase * period, tuple(agents), held)
+
+
+def objective_terms(motion: Motion) -> dict[str, float]:
+    """Return the unweighted integrals of the objective by the trapezoid rule over the knots.
+
+    Keys: each agent's name (squared torques of its moving joints, eq. 10), ``"acceleration"`` (squared accelerations
+    of those joints and of the object's six coordinates) and ``"force"`` (squared grasp forces).
+    """
+    step = np.diff(motion.time)
+    weights = np.zeros(len(motion.time))
+    weights[:-1] += step / 2
+    weights[1:] += step / 2
+    terms = {agent.name: float(weights @ (agent.tau[:, agent.moving] ** 2).sum(axis=1)) for agent in motion.agents}
+    acceleration = sum((agent.a[:, agent.moving] ** 2).sum(axis=1) for agent in motion.agents)
+    acceleration = acceleration + (motion.held.pose_acceleration**2).sum(axis=1)
+    force = np.sum([(agent.grasp_force**2).sum(axis=1) for agent in motion.agents], axis=0)
+    return terms | {"acceleration": float(weights @ acceleration), "force": float(weights @ force)}
+
+
+def objective_weights(problem: Problem) -> dict[str, float]:
+    """Return the weight of each of ``objective_terms``."""
+    task = problem.task
+    weights = {agent.name: w for agent, w in zip(problem.team.agents, task.agent_weights, strict=True)}
+    return weights | {"acceleration": task.acceleration_weight, "force": task.force_weight}

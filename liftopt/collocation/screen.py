@@ -1,0 +1,165 @@
+"""Why no posture holds the object at an end of the lift: out of reach, or too weak, by name and amount."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+from scipy.optimize import least_squares
+
+from liftopt.collocation.guess import Posture, PostureSolver, seed_coordinates
+from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.task import LiftTask
+from liftopt.trajectory import free_flyer_state
+
+Array = npt.NDArray[np.float64]
+REACHED = 1e-4  # [m]
+SEEDS = 6
+# Pulls the search toward the seed, too weakly to matter where the grasp can be reached.
+REGULARISATION = 1e-4
+STRONGEST = 64.0
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """What is in the way at one end.
+
+    Attributes:
+        constraint: ``"closure"``, ``"torque"`` or ``"grasp_force"``.
+        who: agent or joint.
+        amount: how far it is from being met, in ``unit``.
+        unit: of ``amount``; ``"times the limit"`` for strength.
+        message: one sentence.
+        posture: the nearest posture found.
+    """
+
+    constraint: str
+    who: str
+    amount: float
+    unit: str
+    message: str
+    posture: Posture
+
+
+def screen(problem: Problem, seed: int, deadline: float) -> tuple[list[Obstacle], list[Posture]]:
+    """Return what is in the way at the start and at the end, and the nearest posture of each end.
+
+    Args:
+        problem: the lift.
+        seed: of the random seeds.
+        deadline: ``time.monotonic`` value past which the search stops.
+    """
+    obstacles, postures = [], []
+    for name, pose in (("start", problem.task.start), ("end", problem.task.end)):
+        obstacle, posture = _screen_end(problem, name, pose, np.random.default_rng(seed), deadline)
+        postures.append(posture)
+        if obstacle is not None:
+            obstacles.append(obstacle)
+    return obstacles, postures
+
+
+def _screen_end(
+    problem: Problem, name: str, pose: Array, rng: np.random.Generator, deadline: float
+) -> tuple[Obstacle | None, Posture]:
+    team = problem.team
+    force = np.zeros(FORCE_SIZE * len(team.agents))
+    nearest, gaps = np.zeros(0), np.full(len(team.agents), np.inf)
+    for attempt in range(SEEDS):
+        coordinates, left = _reach(team, problem.task, pose, seed_coordinates(problem, pose, rng if attempt else None))
+        if left.max() < gaps.max():
+            nearest, gaps = coordinates, left
+        if gaps.max() < REACHED or time.monotonic() > deadline:
+            break
+    near = Posture(nearest, force, np.inf)
+    if gaps.max() >= REACHED:
+        worst = int(np.argmax(gaps))
+        who = team.agents[worst].name
+        text = f"out of reach at the {name} of the lift: the {who}'s grasp stays {gaps[worst]:.3f} m short"
+        return Obstacle("closure", who, float(gaps[worst]), "m", text, near), near
+    return _strength(problem, name, pose, nearest, deadline) or (None, near)
+
+
+def _reach(team: Team, task: LiftTask, pose: Array, seed: Array) -> tuple[Array, Array]:
+    """Return the coordinates that bring all grasps nearest, and the gap left to each agent [m]."""
+    models = [agent.reduced() for agent in team.agents]
+    datas, held = [model.createData() for model in models], team.held
+    held_data = held.model.createData()
+    free = np.isnan(pose)
+    lower = np.concatenate([*(agent.limits.q_lower for agent in team.agents), task.pose_lower[free]])
+    upper = np.concatenate([*(agent.limits.q_upper for agent in team.agents), task.pose_upper[free]])
+    n = len(seed) - OBJECT_SIZE
+    rest = np.zeros(OBJECT_SIZE)
+
+    def gaps(z: Array) -> Array:
+        x = pose.copy()
+        x[free] = z[n:]
+        pin.framesForwardKinematics(held.model, held_data, free_flyer_state(x, rest, rest)[0])
+        out, at = [], 0
+        for agent, model, data, frame in zip(team.agents, models, datas, held.grasp_frames, strict=True):
+            pin.framesForwardKinematics(model, data, z[at : at + model.nq])
+            at += model.nq
+            target = held_data.oMf[held.model.getFrameId(frame)].translation
+            out.append(data.oMf[model.getFrameId(agent.grasp_frame)].translation - target)
+        return np.concatenate(out)
+
+    start = np.clip(np.concatenate([seed[:n], seed[n:][free]]), lower, upper)
+    found = least_squares(
+        lambda z: np.concatenate([gaps(z), REGULARISATION * (z - start)]), start, bounds=(lower, upper)
+    )
+    whole = np.concatenate([found.x[:n], pose])
+    whole[n:][free] = found.x[n:]
+    return whole, np.linalg.norm(gaps(found.x).reshape(-1, 3), axis=1)
+
+
+def _strength(
+    problem: Problem, name: str, pose: Array, seed: Array, deadline: float
+) -> tuple[Obstacle, Posture] | None:
+    """Find by bisection how many times stronger the agents and grasps must be to hold still there; None if not at all."""
+    if _posture_with(problem, pose, seed, 1.0, deadline):
+        return None
+    weak, strong, held = 1.0, 1.0, None
+    while held is None:
+        weak, strong = strong, 2 * strong
+        if strong > STRONGEST or time.monotonic() > deadline:
+            return None
+        held = _posture_with(problem, pose, seed, strong, deadline)
+    while strong / weak > 1.01 and time.monotonic() < deadline:
+        middle = (weak * strong) ** 0.5
+        posture = _posture_with(problem, pose, seed, middle, deadline)
+        weak, strong, held = (weak, middle, posture) if posture else (middle, strong, held)
+    constraint, who = _tightest(problem, held)
+    what = "torque limit of" if constraint == "torque" else "grasp force cap of"
+    text = f"too weak at the {name} of the lift: holding still needs {strong:.2f} times the {what} {who}"
+    return Obstacle(constraint, who, strong, "times the limit", text, held), held
+
+
+def _posture_with(problem: Problem, pose: Array, seed: Array, factor: float, deadline: float) -> Posture | None:
+    agents = []
+    for agent in problem.team.agents:
+        limits = agent.limits
+        stronger = replace(limits, tau_lower=factor * limits.tau_lower, tau_upper=factor * limits.tau_upper)
+        agents.append(replace(agent, limits=stronger))
+    task = replace(problem.task, max_grasp_force=factor * problem.task.max_grasp_force)
+    return PostureSolver(replace(problem.team, agents=tuple(agents)), task).solve(pose, seed, deadline)
+
+
+def _tightest(problem: Problem, posture: Posture) -> tuple[str, str]:
+    """Return the constraint and who it belongs to that leaves the least room in a posture."""
+    candidates, at = [], 0
+    for i, agent in enumerate(problem.team.agents):
+        model = agent.reduced()
+        data, q = model.createData(), posture.coordinates[at : at + model.nq]
+        at += model.nq
+        force = posture.force[FORCE_SIZE * i : FORCE_SIZE * (i + 1)]
+        frame = model.getFrameId(agent.grasp_frame)
+        jacobian = pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:FORCE_SIZE]
+        tau = pin.rnea(model, data, q, np.zeros(model.nv), np.zeros(model.nv)) + jacobian.T @ force
+        share = np.where(tau > 0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
+        candidates += [(float(s), "torque", joint) for s, joint in zip(share, agent.moving_joints, strict=True)]
+        candidates.append((float(np.linalg.norm(force)) / problem.task.max_grasp_force, "grasp_force", agent.name))
+    _, constraint, who = max(candidates)
+    return constraint, who

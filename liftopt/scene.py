@@ -1,0 +1,64 @@
+"""From a scenario to what the optimal-control problem knows: agents, object and task."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.human import Subject, human_agent
+from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.table import lifted_table
+from liftopt.scenario import GraspPose, Scenario, Table
+
+OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
+ROOM = 5.0  # [m]: half the width of the room the object may move in
+
+
+def agents_of(scenario: Scenario) -> tuple[Agent, ...]:
+    """Return the person and the robot, in the order of the object's grasp points."""
+    human, robot = scenario.human, scenario.robot
+    subject = Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
+    return (
+        human_agent(subject),
+        sawyer_agent(
+            standing_distance=scenario.task.standing_distance,
+            base_height=robot.base_height,
+            tool_length=robot.tool.length,
+            tool_mass=robot.tool.mass,
+        ),
+    )
+
+
+def object_of(scenario: Scenario) -> LiftedObject:
+    """Return the table."""
+    table = scenario.table
+    return lifted_table(mass=table.mass, depth=table.depth, width=table.width, height=table.height)
+
+
+def task_of(scenario: Scenario) -> LiftTask:
+    """Return the task: level poses at both ends by the height of the grasp points, sideways free."""
+    limits, objective = scenario.limits, scenario.objective
+    pitch, yaw = math.radians(limits.table_pitch_deg), math.radians(limits.table_yaw_deg)
+    return LiftTask(
+        duration=scenario.duration,
+        start=_pose(scenario.task.start, scenario.table),
+        end=_pose(scenario.task.end, scenario.table),
+        # Two point grasps cannot turn the object about the line through them: its roll is locked.
+        pose_lower=np.array([-ROOM, -ROOM, 0.0, 0.0, -pitch, -yaw]),
+        pose_upper=np.array([ROOM, ROOM, ROOM, 0.0, pitch, yaw]),
+        pose_velocity=np.full(6, OBJECT_SPEED),
+        agent_weights=(objective.human_weight, objective.robot_weight),
+        acceleration_weight=objective.acceleration_weight,
+        force_weight=objective.force_weight,
+        max_grasp_force=limits.max_grasp_force,
+        balance_tolerance=limits.balance_tolerance,
+    )
+
+
+def _pose(grasp: GraspPose, table: Table) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return the pose of the centre of mass: half the table's height above the grasp points, half its depth ahead."""
+    ahead = np.nan if grasp.human_distance is None else grasp.human_distance + table.depth / 2
+    return np.array([ahead, np.nan, grasp.height + table.height / 2, 0.0, 0.0, 0.0])

@@ -1,0 +1,204 @@
+"""Is it a solution? Every requirement measured on the exported models by Pinocchio, not by the solver's functions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.constraints import BALANCE_ROWS, UNSERVED_ROW
+from liftopt.collocation.kkt import kkt_error
+from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.trajectory import AgentTrajectory
+
+Array = npt.NDArray[np.float64]
+FINER = 10
+AT_KNOTS = 1e-6  # closure [m], balance [N, Nm], limits [their unit]
+CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
+AT_ENDS = 1e-9
+OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
+
+
+@dataclass(frozen=True)
+class Check:
+    """One requirement: the worst value found, its limit (infinite where it is only reported), and where.
+
+    Attributes:
+        name: of the constraint.
+        value: worst value; violations are positive, 0 where there is room.
+        limit: largest value that passes.
+        unit: of both.
+        where: joint, agent or coordinate, and time.
+    """
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    where: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is a number within the limit."""
+        return bool(self.value <= self.limit)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """All checks of one point.
+
+    Attributes:
+        checks: the requirements, worst value each.
+        kkt_error: error of the first-order conditions.
+        kkt_tolerance: largest that passes.
+    """
+
+    checks: tuple[Check, ...]
+    kkt_error: float
+    kkt_tolerance: float
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check and the KKT error pass."""
+        return bool(self.kkt_error <= self.kkt_tolerance) and all(check.passed for check in self.checks)
+
+    @property
+    def worst(self) -> Check:
+        """The check with the largest share of its limit."""
+        return max(self.checks, key=lambda check: np.nan_to_num(check.value / check.limit, nan=np.inf))
+
+    @property
+    def max_violation(self) -> float:
+        """The largest value among the checks that hold at the knots to 1e-6."""
+        return max(check.value for check in self.checks if check.limit == AT_KNOTS)
+
+    def describe_failure(self) -> str:
+        """Return what fails, by name, amount and place, in one line."""
+        if all(check.passed for check in self.checks):
+            return f"KKT error {self.kkt_error:.3g}, allowed {self.kkt_tolerance:.3g}"
+        worst = self.worst
+        return f"{worst.name} {worst.value:.3g} {worst.unit}, allowed {worst.limit:.3g} ({worst.where})"
+
+    def check(self, name: str) -> Check:
+        """Return the check of that name; raises KeyError if there is none."""
+        for check in self.checks:
+            if check.name == name:
+                return check
+        raise KeyError(name)
+
+
+def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tolerance: float) -> Verification:
+    """Measure every requirement on a solver's result.
+
+    Args:
+        problem: what was solved.
+        spline: its space of motions.
+        result: where the solver stopped.
+        tolerance: largest KKT error.
+    """
+    knots = motion_at(problem, spline, result.x, spline.phase)
+    fine = motion_at(problem, spline, result.x, np.linspace(0.0, 1.0, FINER * spline.intervals + 1))
+    optimality = kkt_error(problem, result.x, result.multipliers)
+    checks = [
+        _closure("closure at the knots", knots, AT_KNOTS, problem.mesh.closure_knots),
+        _closure("closure between knots", fine, CLOSURE_BETWEEN_KNOTS, np.arange(len(fine.time))),
+        *_balance(problem, knots, fine),
+        *_limits(problem, knots, AT_KNOTS, ""),
+        *_limits(problem, fine, np.inf, " between knots"),
+        *_ends(problem, knots),
+        _objective(problem, knots, result),
+    ]
+    return Verification(tuple(checks), optimality.error, tolerance)
+
+
+def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64]) -> Check:
+    """Eq. 16: distance of each agent's grasp point from the object's."""
+    gaps = [
+        np.linalg.norm(agent.grasp_position - motion.held.grasp_position[:, i], axis=1)[at]
+        for i, agent in enumerate(motion.agents)
+    ]
+    return _worst(name, np.stack(gaps, axis=1), limit, "m", [agent.name for agent in motion.agents], motion.time[at])
+
+
+def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
+    """Eq. 17 on the five rows that point grasps serve; the sixth, and all between knots, are reported."""
+    tolerance = problem.task.balance_tolerance
+    served = [r for r in range(6) if r != UNSERVED_ROW or tolerance > 0]
+    labels = [f"{knots.held.name} {row}" for row in BALANCE_ROWS]
+    pick = [labels[r] for r in served]
+    excess = np.maximum(np.abs(knots.held.wrench[:, served]) - tolerance, 0.0)
+    between = np.abs(fine.held.wrench[:, served])
+    unserved = np.abs(fine.held.wrench[:, [UNSERVED_ROW]])
+    return [
+        _worst("balance at the knots", excess, AT_KNOTS, "N, Nm", pick, knots.time),
+        _worst("balance between knots", between, np.inf, "N, Nm", pick, fine.time),
+        _worst("moment no grasp serves", unserved, np.inf, "Nm", [labels[UNSERVED_ROW]], fine.time),
+    ]
+
+
+def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list[Check]:
+    """Eqs. 11, 12, 14, 15 and the limits on speed and grasp force: how far each is exceeded."""
+    task, held, names = problem.task, motion.held, [f"{motion.held.name} {c}" for c in OBJECT_COORDINATES]
+    position, speed, torque, force = [], [], [], []
+    for agent in motion.agents:
+        q, v, tau = (values[:, agent.moving] for values in (agent.q, agent.v, agent.tau))
+        bounds = agent.limits
+        position.append(np.maximum(bounds.q_lower - q, q - bounds.q_upper))
+        speed.append(np.abs(v) - bounds.velocity)
+        torque.append(np.maximum(bounds.tau_lower - tau, tau - bounds.tau_upper))
+        force.append(np.linalg.norm(agent.grasp_force, axis=1) - task.max_grasp_force)
+    joints = [name for agent in motion.agents for name in _moving_names(agent)]
+    position.append(np.maximum(task.pose_lower - held.pose, held.pose - task.pose_upper))
+    speed.append(np.abs(held.pose_velocity) - task.pose_velocity)
+    agents = [agent.name for agent in motion.agents]
+    checks = [
+        _worst("position limits", np.hstack(position), limit, "rad, m", joints + names, motion.time),
+        _worst("speed limits", np.hstack(speed), limit, "rad/s, m/s", joints + names, motion.time),
+        _worst("torque limits", np.hstack(torque), limit, "Nm", joints, motion.time),
+        _worst("grasp force cap", np.stack(force, axis=1), limit, "N", agents, motion.time),
+    ]
+    for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):
+        if model.keep_in is not None:
+            short = model.keep_in.offset - trajectory.grasp_position @ model.keep_in.normal
+            checks.append(_worst("grasp in front", short[:, None], limit, "m", [model.name], motion.time))
+    return [Check(c.name + suffix, max(0.0, c.value), c.limit, c.unit, c.where) for c in checks]
+
+
+def _ends(problem: Problem, motion: Motion) -> list[Check]:
+    """Eqs. 18 and 19: rest at both ends, the object's pose where the task fixes it."""
+    ends, task, held = [0, -1], problem.task, motion.held
+    labels = [name for agent in motion.agents for name in agent.joint_names]
+    labels += [f"{held.name} {c}" for c in OBJECT_COORDINATES]
+    speed = np.hstack([*(agent.v[ends] for agent in motion.agents), held.pose_velocity[ends]])
+    acceleration = np.hstack([*(agent.a[ends] for agent in motion.agents), held.pose_acceleration[ends]])
+    off = np.nan_to_num(np.abs(held.pose[ends] - np.stack([task.start, task.end])), nan=0.0)
+    time = motion.time[ends]
+    return [
+        _worst("speed at the ends", np.abs(speed), AT_ENDS, "rad/s, m/s", labels, time),
+        _worst("acceleration at the ends", np.abs(acceleration), AT_ENDS, "rad/s^2, m/s^2", labels, time),
+        _worst("pose at the ends", off, AT_KNOTS, "m, rad", labels[-len(OBJECT_COORDINATES) :], time),
+    ]
+
+
+def _objective(problem: Problem, motion: Motion, result: SolverResult) -> Check:
+    """The solver's objective against Pinocchio's torques: would show a wrong kernel."""
+    terms, weights = objective_terms(motion), objective_weights(problem)
+    ours = sum(weights[name] * value for name, value in terms.items())
+    error = abs(ours - result.objective) / max(1.0, abs(ours))
+    return Check("objective by Pinocchio", error, OBJECTIVE, "relative", "")
+
+
+def _moving_names(agent: AgentTrajectory) -> list[str]:
+    return [name for name, moves in zip(agent.joint_names, agent.moving, strict=True) if moves]
+
+
+def _worst(name: str, values: Array, limit: float, unit: str, labels: list[str], time: Array) -> Check:
+    """Return the check of the largest entry of ``values`` (times, labels); a NaN is the largest."""
+    flat = np.where(np.isnan(values), np.inf, values)
+    k, j = np.unravel_index(int(np.argmax(flat)), flat.shape)
+    return Check(name, float(values[k, j]), limit, unit, f"{labels[j]} at t = {time[k]:.3f} s")

@@ -1,0 +1,290 @@
+"""Teams, problems and small models that the tests of the optimal-control core share.
+
+The human, Sawyer and table come from the user's own kernel cache, so that they are compiled once a machine; everything
+else runs on small chains or on CasADi's virtual machine.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
+from liftopt.collocation.guess import Start, posture_starts
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.ipopt import Ipopt
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
+from liftopt.multibody.human import Subject, human_agent
+from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.table import lifted_table
+
+TEN_DEGREES = np.radians(10.0)
+
+
+def chain(seed: int, joints: tuple[str, ...] = ("RX", "RY", "RZ", "PY")) -> pin.Model:
+    """Return a chain with random placements and bodies, and the frame ``tip``."""
+    rng = np.random.default_rng(seed)
+    kinds = {"RX": pin.JointModelRX, "RY": pin.JointModelRY, "RZ": pin.JointModelRZ, "PY": pin.JointModelPY}
+    model, parent = pin.Model(), 0
+    for i, kind in enumerate(joints):
+        placement = pin.SE3(pin.exp3(rng.normal(size=3)), 0.3 * rng.normal(size=3))
+        parent = model.addJoint(parent, kinds[kind](), placement, f"arm_{kind}{i}")
+        half = rng.normal(size=(3, 3))
+        body = pin.Inertia(rng.uniform(0.5, 2.0), 0.1 * rng.normal(size=3), 0.02 * half @ half.T + 0.01 * np.eye(3))
+        model.appendBodyToJoint(parent, body, pin.SE3.Identity())
+    tip = pin.SE3(pin.exp3(rng.normal(size=3)), 0.2 * rng.normal(size=3))
+    model.addFrame(pin.Frame("tip", parent, 0, tip, pin.FrameType.OP_FRAME))
+    return model
+
+
+def chain_agent(seed: int, name: str = "arm") -> Agent:
+    """Return a four-joint agent on a random chain, with a half-space that is not along an axis."""
+    n = 4
+    limits = JointLimits(
+        -2.0 * np.ones(n), 2.5 * np.ones(n), 3.0 * np.ones(n), -np.arange(60.0, 100.0, 10.0), 80.0 * np.ones(n)
+    )
+    keep_in = HalfSpace(np.array([0.6, 0.0, 0.8]), -5.0)
+    return Agent(name, "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), keep_in)
+
+
+def box(grasps: np.ndarray, mass: float = 3.0) -> LiftedObject:
+    """Return a body with a full inertia tensor, its frame at the centre of mass, and grasp frames (m, 3)."""
+    model = pin.Model()
+    root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
+    inertia = np.array([[0.06, 0.004, -0.003], [0.004, 0.05, 0.002], [-0.003, 0.002, 0.08]])
+    model.appendBodyToJoint(root, pin.Inertia(mass, np.zeros(3), inertia), pin.SE3.Identity())
+    names = tuple(f"grasp_{i}" for i in range(len(grasps)))
+    for name, point in zip(names, grasps, strict=True):
+        model.addFrame(pin.Frame(name, root, 0, pin.SE3(np.eye(3), point), pin.FrameType.OP_FRAME))
+    return LiftedObject("box", "", model, names)
+
+
+def turned(agent: Agent, angle: float, x: float) -> Agent:
+    """Return ``agent`` turned by ``angle`` about the vertical through the origin, then moved by ``x`` ahead."""
+    model = agent.model.copy()
+    moved = pin.SE3(pin.utils.rotate("z", angle), np.array([x, 0.0, 0.0]))
+    model.jointPlacements[1] = moved * model.jointPlacements[1]
+    keep_in = agent.keep_in
+    if keep_in is not None:
+        normal = moved.rotation @ keep_in.normal
+        keep_in = HalfSpace(normal, keep_in.offset + float(normal @ moved.translation))
+    return replace(agent, model=model, keep_in=keep_in, name=f"{agent.name}_turned")
+
+
+def level_task(agents: int = 2, x: float = 0.625, **changes: object) -> LiftTask:
+    """Return a lift of a level object from a centre at 0.91 m to 1.41 m, as in Table 5."""
+    task = LiftTask(
+        duration=2.0,
+        start=np.array([x, np.nan, 0.91, 0.0, 0.0, 0.0]),
+        end=np.array([x, np.nan, 1.41, 0.0, 0.0, 0.0]),
+        pose_lower=np.array([-5.0, -5.0, 0.0, 0.0, -TEN_DEGREES, -TEN_DEGREES]),
+        pose_upper=np.array([5.0, 5.0, 3.0, 0.0, TEN_DEGREES, TEN_DEGREES]),
+        pose_velocity=np.full(6, 2.0),
+        agent_weights=(1.0, 0.7, 1.3)[:agents],
+        acceleration_weight=0.5,
+        force_weight=0.01,
+        max_grasp_force=200.0,
+        balance_tolerance=0.0,
+    )
+    return replace(task, **changes)  # type: ignore[arg-type]
+
+
+def newton_euler(model: pin.Model, frames: tuple[str, ...], y: np.ndarray, period: float) -> np.ndarray:
+    """Return the object's outputs by Newton and Euler, its attitude Rx Ry Rz differentiated by the chain rule.
+
+    Args:
+        model: free body whose frame is at its centre of mass.
+        frames: its grasp frames.
+        y: (18 + 3 m,) coordinates, their first and second derivatives by the phase, and the grasp forces.
+        period: [s].
+    """
+    x, rate, second = y[:6], y[6:12] / period, y[12:18] / period**2
+    forces = y[18:].reshape(-1, 3)
+    turns = []
+    for axis, angle, dot, ddot in zip(np.eye(3), x[3:], rate[3:], second[3:], strict=True):
+        rotation, generator = pin.exp3(axis * angle), pin.skew(axis)
+        twice = rotation @ (generator @ generator * dot**2 + generator * ddot)
+        turns.append((rotation, rotation @ generator * dot, twice))
+    (a, da, dda), (b, db, ddb), (c, dc, ddc) = turns
+    rotation = a @ b @ c
+    first = da @ b @ c + a @ db @ c + a @ b @ dc
+    twice = dda @ b @ c + a @ ddb @ c + a @ b @ ddc + 2 * (da @ db @ c + da @ b @ dc + a @ db @ dc)
+    omega = pin.unSkew(rotation.T @ first)
+    alpha = pin.unSkew(rotation.T @ twice + first.T @ first)
+    body = model.inertias[1]
+    levers = np.array([model.frames[model.getFrameId(name)].placement.translation for name in frames])
+    force = body.mass * (second[:3] - np.array([0.0, 0.0, -9.81])) - forces.sum(axis=0)
+    moment = body.inertia @ alpha + np.cross(omega, body.inertia @ omega)
+    moment -= np.cross(levers, forces @ rotation).sum(axis=0)
+    return np.concatenate([force, moment, (x[:3] + levers @ rotation.T).ravel()])
+
+
+def random_unknowns(problem: Problem, rng: np.random.Generator) -> np.ndarray:
+    """Return unknowns near the comfortable postures with forces of some newtons."""
+    layout = problem.layout
+    postures = np.concatenate([*(agent.posture for agent in problem.team.agents), [0.6, 0.0, 1.1, 0.0, 0.0, 0.0]])
+    x = np.empty(layout.n_x)
+    x[layout.control] = postures + 0.2 * rng.normal(size=layout.control.shape)
+    x[layout.force] = 10.0 * rng.normal(size=layout.force.shape)
+    return x
+
+
+def check_derivatives(problem: Problem) -> None:
+    """Central differences of f, g and of the Lagrangian's gradient at a random point with random multipliers."""
+    nlp, p, rng = problem.nlp, problem.parameters, np.random.default_rng(7)
+    x, sigma, h = random_unknowns(problem, rng), 0.7, 1e-5
+    lam = rng.normal(size=problem.constraints.linear.shape[0])
+    n_x = len(x)
+    columns = ca.DM(np.hstack([x[:, None] + h * np.eye(n_x), x[:, None] - h * np.eye(n_x)]))
+    f, gradient = nlp.grad_f.map(2 * n_x)(columns, p)
+    g = nlp.jac_g.map(2 * n_x)(columns, p)[0]
+    value, at = nlp.grad_f(x, p)
+    rows, jacobian = nlp.jac_g(x, p)
+
+    def difference(values: object) -> np.ndarray:
+        full = ca.DM(values).full()
+        return np.asarray(full[:, :n_x] - full[:, n_x:]) / (2 * h)
+
+    numeric = difference(f).ravel()
+    np.testing.assert_allclose(ca.DM(at).full().ravel(), numeric, rtol=0, atol=1e-7 * np.abs(numeric).max())
+    numeric = difference(g)
+    np.testing.assert_allclose(ca.DM(jacobian).full(), numeric, rtol=0, atol=1e-7 * np.abs(numeric).max())
+    symbol = ca.Function("direct", [nlp.x, nlp.p], [nlp.f, nlp.g])(x, p)
+    np.testing.assert_allclose(float(symbol[0]), float(value), rtol=1e-14)
+    np.testing.assert_allclose(ca.DM(symbol[1]).full(), ca.DM(rows).full(), rtol=0, atol=1e-12)
+
+    slopes = np.empty((n_x, 2 * n_x))
+    for i in range(2 * n_x):
+        slopes[:, i] = sigma * gradient[:, i].full().ravel()
+        slopes[:, i] += ca.mtimes(nlp.jac_g(columns[:, i], p)[1].T, lam).full().ravel()
+    numeric = difference(slopes)
+    hessian = nlp.hess_lag(x, p, sigma, lam)
+    assert hessian.sparsity().is_triu()
+    np.testing.assert_allclose(ca.DM(hessian).full(), np.triu(numeric), rtol=0, atol=1e-7 * np.abs(numeric).max())
+
+
+@pytest.fixture(scope="session", name="random_unknowns")
+def _random_unknowns() -> Callable[[Problem, np.random.Generator], np.ndarray]:
+    return random_unknowns
+
+
+@pytest.fixture(scope="session", name="check_derivatives")
+def _check_derivatives() -> Callable[[Problem], None]:
+    return check_derivatives
+
+
+@pytest.fixture(scope="session", name="newton_euler")
+def _newton_euler() -> Callable[..., np.ndarray]:
+    return newton_euler
+
+
+@pytest.fixture(scope="session")
+def make_chain() -> Callable[..., pin.Model]:
+    return chain
+
+
+@pytest.fixture(scope="session")
+def make_arm() -> Callable[..., Agent]:
+    return chain_agent
+
+
+@pytest.fixture(scope="session")
+def make_box() -> Callable[..., LiftedObject]:
+    return box
+
+
+@pytest.fixture(scope="session")
+def make_turned() -> Callable[..., Agent]:
+    return turned
+
+
+@pytest.fixture(scope="session")
+def make_task() -> Callable[..., LiftTask]:
+    return level_task
+
+
+@pytest.fixture(scope="session")
+def human() -> Agent:
+    return human_agent(Subject(1.75, 75.0, "male"))
+
+
+@pytest.fixture(scope="session")
+def sawyer() -> Agent:
+    return sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4)
+
+
+@pytest.fixture(scope="session")
+def table() -> LiftedObject:
+    return lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02)
+
+
+@pytest.fixture(scope="session")
+def team(human: Agent, sawyer: Agent, table: LiftedObject) -> Team:
+    return Team.of((human, sawyer), table)
+
+
+@pytest.fixture(scope="session")
+def problem(team: Team) -> Problem:
+    """Return the lift of Table 5 on 8 intervals."""
+    return Problem(team, level_task(), RestToRestSpline(8).mesh())
+
+
+@pytest.fixture(scope="session")
+def small_lift(team: Team) -> Problem:
+    """Return the lift of Table 5 on 10 intervals, which the tests solve."""
+    return Problem(team, level_task(agent_weights=(1.0, 1.0)), RestToRestSpline(10).mesh())
+
+
+@pytest.fixture(scope="session")
+def starts(small_lift: Problem) -> list[Start]:
+    return posture_starts(small_lift, 2, 0, time.monotonic() + 120.0)
+
+
+@pytest.fixture(scope="session")
+def ipopt(small_lift: Problem) -> Ipopt:
+    return Ipopt(small_lift)
+
+
+@pytest.fixture(scope="session")
+def solved(ipopt: Ipopt, starts: list[Start]) -> SolverResult:
+    return ipopt.solve(starts[0].x, deadline=time.monotonic() + 120.0)
+
+
+@pytest.fixture(scope="session")
+def arm_team(make_arm: Callable[..., Agent]) -> Team:
+    """Return two random arms that hold a box, on CasADi's virtual machine, which alone can differentiate itself."""
+    held = box(np.array([[-0.3, 0.02, -0.05], [0.25, -0.03, -0.04]]))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CC", "")
+        patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
+        return Team.of((make_arm(1), make_arm(2, "other")), held)
+
+
+@pytest.fixture(scope="session")
+def knot_functions(
+    human: Agent, sawyer: Agent, table: LiftedObject
+) -> dict[str, tuple[pin.Model, Topology, KnotFunctions]]:
+    """Return (model, topology, uncompiled functions) of three agents and of an object."""
+    arm = chain_agent(3)
+    built = {}
+    for name, agent in (("human", human), ("sawyer", sawyer), ("arm", arm)):
+        topology = Topology.of(agent.reduced(), (agent.grasp_frame,))
+        built[name] = (topology.model, topology, agent_functions(topology))
+    for name, held in (("table", table), ("box", box(np.array([[-0.3, 0.1, 0.0], [0.2, 0.1, -0.1], [0, -0.2, 0.1]])))):
+        topology = Topology.of(held.model, held.grasp_frames)
+        built[name] = (topology.model, topology, object_functions(topology))
+    return built
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(7)

@@ -1,0 +1,110 @@
+"""Other teams need models and no change of the core: derivatives by finite differences, solutions by Pinocchio."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from liftopt.collocation.guess import posture_starts
+from liftopt.collocation.kkt import kkt_error
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.ipopt import Ipopt
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.human import Subject, human_agent
+from liftopt.multibody.sawyer import sawyer_agent
+
+Make = Callable[..., object]
+EDGES = np.array([[-0.225, 0.0, -0.01], [0.225, 0.0, -0.01]])
+
+
+@pytest.fixture(autouse=True)
+def _virtual_machine(team: Team, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep what the default team compiled, and compile nothing more."""
+    monkeypatch.setenv("CC", "")
+
+
+def solve(problem: Problem) -> None:
+    """Solve from a posture pair and check the point by Pinocchio in double precision."""
+    starts = posture_starts(problem, 1, 0, time.monotonic() + 60.0)
+    assert starts
+    result = Ipopt(problem).solve(starts[0].x, deadline=time.monotonic() + 60.0)
+    assert result.converged, result.status
+    assert kkt_error(problem, result.x, result.multipliers).error <= 1e-6
+
+
+def test_two_robots(
+    sawyer: Agent,
+    make_box: Callable[..., LiftedObject],
+    make_turned: Callable[..., Agent],
+    make_task: Callable[..., LiftTask],
+    check_derivatives: Callable[[Problem], None],
+) -> None:
+    """Two Sawyers face each other over a box, one turned about the vertical."""
+    near = sawyer_agent(standing_distance=0.0 + 1.275, base_height=0.8, tool_length=0.15, tool_mass=0.4)
+    agents = (make_turned(near, np.pi, 0.65), sawyer)
+    team = Team.of(agents, make_box(EDGES))
+    problem = Problem(team, make_task(), RestToRestSpline(8).mesh())
+    check_derivatives(problem)
+    solve(problem)
+
+
+def test_two_humans(
+    human: Agent,
+    table: LiftedObject,
+    make_turned: Callable[..., Agent],
+    make_task: Callable[..., LiftTask],
+    check_derivatives: Callable[[Problem], None],
+) -> None:
+    """A man and a woman opposite each other; her half-space is turned with her."""
+    other = make_turned(human_agent(Subject(1.65, 62.0, "female")), np.pi, 1.25)
+    assert other.keep_in is not None and other.keep_in.normal[0] == pytest.approx(-1.0)
+    team = Team.of((human, other), table)
+    problem = Problem(team, make_task(), RestToRestSpline(8).mesh())
+    check_derivatives(problem)
+    solve(problem)
+
+
+def test_three_agents_on_one_object(
+    human: Agent,
+    sawyer: Agent,
+    make_arm: Callable[..., Agent],
+    make_box: Callable[..., LiftedObject],
+    make_task: Callable[..., LiftTask],
+    check_derivatives: Callable[[Problem], None],
+) -> None:
+    """A third grasp on the object, held by a random arm: sizes and derivatives."""
+    held = make_box(np.vstack([EDGES, [[0.0, 0.15, -0.01]]]))
+    team = Team.of((human, sawyer, make_arm(4)), held)
+    problem = Problem(team, make_task(3), RestToRestSpline(6).mesh())
+    assert problem.layout.n_x == 5 * (10 + 7 + 4 + 6) + 7 * 9
+    assert sum(block.name == "closure" for block in problem.constraints.blocks) == 3
+    check_derivatives(problem)
+
+
+def test_three_grasps_off_one_line_balance_about_every_axis(
+    make_arm: Callable[..., Agent], make_box: Callable[..., LiftedObject], make_task: Callable[..., LiftTask]
+) -> None:
+    """Statics: three point grasps that are not on a line can serve all six rows, so equality must ask for all six."""
+    grasps = np.vstack([EDGES, [[0.0, 0.15, -0.01]]])
+    wrench = np.vstack([np.hstack([np.eye(3)] * 3), np.hstack([pin.skew(point) for point in grasps])])
+    assert np.linalg.matrix_rank(wrench) == 6
+    team = Team.of(tuple(make_arm(i, f"arm{i}") for i in range(3)), make_box(grasps))
+    problem = Problem(team, make_task(3), RestToRestSpline(6).mesh())
+    (block,) = (block for block in problem.constraints.blocks if block.name == "balance")
+    assert len(block.labels) == 6
+
+
+def test_grasps_along_another_axis_leave_out_its_moment(
+    make_arm: Callable[..., Agent], make_box: Callable[..., LiftedObject], make_task: Callable[..., LiftTask]
+) -> None:
+    """Statics: two point grasps cannot turn the object about the line through them, here the body's y axis."""
+    team = Team.of((make_arm(1), make_arm(2, "other")), make_box(EDGES[:, [1, 0, 2]]))
+    problem = Problem(team, make_task(), RestToRestSpline(6).mesh())
+    (block,) = (block for block in problem.constraints.blocks if block.name == "balance")
+    assert "moment y" not in block.labels and "moment x" in block.labels

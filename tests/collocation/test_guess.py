@@ -1,0 +1,116 @@
+"""Starts: Pinocchio judges the postures, and equal seeds must give equal starts."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from liftopt.collocation.guess import PostureSolver, Start, naive_start, posture_starts
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.task import LiftTask
+
+
+def seed(team: Team, pose: np.ndarray) -> np.ndarray:
+    return np.concatenate([*(agent.posture for agent in team.agents), np.nan_to_num(pose)])
+
+
+@pytest.mark.parametrize("end", ["start", "end"])
+def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[..., LiftTask]) -> None:
+    """Pinocchio: closure, static balance on the five rows, torque and joint limits, the pose asked for."""
+    task = make_task(agent_weights=(1.0, 1.0))
+    pose = getattr(task, end)
+    posture = PostureSolver(team, task).solve(pose, seed(team, pose), time.monotonic() + 30.0)
+    assert posture is not None
+    at = posture.coordinates[-6:]
+    given = ~np.isnan(pose)
+    np.testing.assert_allclose(at[given], pose[given], atol=1e-9)
+    turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", at[3:], strict=True)]
+    rotation, first = turn[0] @ turn[1] @ turn[2], 0
+    held, moment = team.held.model, np.zeros(3)
+    for i, agent in enumerate(team.agents):
+        model, f = agent.reduced(), posture.force[3 * i : 3 * i + 3]
+        q = posture.coordinates[first : first + model.nv]
+        first += model.nv
+        data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+        tau = pin.computeGeneralizedGravity(model, data, q).copy()
+        tau += pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3].T @ f
+        limits = agent.limits
+        assert (q >= limits.q_lower - 1e-9).all() and (q <= limits.q_upper + 1e-9).all()
+        assert (tau >= limits.tau_lower - 1e-5).all() and (tau <= limits.tau_upper + 1e-5).all()
+        pin.framesForwardKinematics(model, data, q)
+        lever = held.frames[held.getFrameId(team.held.grasp_frames[i])].placement.translation
+        np.testing.assert_allclose(data.oMf[frame].translation, at[:3] + rotation @ lever, atol=1e-7)
+        assert np.linalg.norm(f) <= task.max_grasp_force
+        moment += np.cross(lever, rotation.T @ f)
+    np.testing.assert_allclose(posture.force.reshape(-1, 3).sum(axis=0), [0.0, 0.0, 2.0 * 9.81], atol=1e-6)
+    np.testing.assert_allclose(moment[1:], 0.0, atol=1e-6)
+
+
+def test_free_coordinates_of_a_pose_are_found(team: Team, make_task: Callable[..., LiftTask]) -> None:
+    """NaN leaves fore-aft and sideways to the solver; the height stays the asked one."""
+    task = make_task(x=np.nan, agent_weights=(1.0, 1.0))
+    posture = PostureSolver(team, task).solve(task.start, seed(team, task.start), time.monotonic() + 30.0)
+    assert posture is not None and np.isfinite(posture.coordinates).all()
+    assert posture.coordinates[-4] == pytest.approx(0.91, abs=1e-9)
+
+
+def test_pose_out_of_reach_has_no_posture(team: Team, make_task: Callable[..., LiftTask]) -> None:
+    """Sawyer reaches about 1.3 m with its tool; the object is three metres away from it."""
+    task = make_task(x=-1.2, agent_weights=(1.0, 1.0))
+    solver = PostureSolver(team, task)
+    assert solver.solve(task.start, seed(team, task.start), time.monotonic() + 10.0) is None
+
+
+def test_starts_join_the_postures_at_rest(starts: list[Start], small_lift: Problem) -> None:
+    """Within bounds, at the asked poses, closed at both ends by Pinocchio, and in range of the asked number."""
+    assert 1 <= len(starts) <= 2
+    assert [start.name for start in starts] == [f"posture pair {i + 1}" for i in range(len(starts))]
+    lower, upper = small_lift.bounds()
+    for start in starts:
+        assert (start.x >= lower).all() and (start.x <= upper).all()
+        control, _ = small_lift.unpack(start.x)
+        for row in (0, -1):
+            for i, agent in enumerate(small_lift.team.agents):
+                model, held = agent.reduced(), small_lift.team.held
+                data, at = model.createData(), control[row, small_lift.layout.columns(2)]
+                pin.framesForwardKinematics(model, data, control[row, small_lift.layout.columns(i)])
+                lever = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
+                turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", at[3:], strict=True)]
+                point = data.oMf[model.getFrameId(agent.grasp_frame)].translation
+                np.testing.assert_allclose(point, at[:3] + turn[0] @ turn[1] @ turn[2] @ lever, atol=1e-6)
+
+
+def test_equal_seeds_give_equal_starts(small_lift: Problem, starts: list[Start]) -> None:
+    again = posture_starts(small_lift, 2, 0, time.monotonic() + 120.0)
+    assert len(again) == len(starts)
+    for one, other in zip(starts, again, strict=True):
+        np.testing.assert_array_equal(one.x, other.x)
+
+
+def test_two_starts_differ(starts: list[Start]) -> None:
+    if len(starts) == 2:
+        assert np.abs(starts[0].x - starts[1].x).max() > 0.05
+
+
+def test_no_time_no_starts(small_lift: Problem) -> None:
+    began = time.monotonic()
+    assert posture_starts(small_lift, 4, 0, began - 1.0) == []
+    assert time.monotonic() - began < 5.0
+
+
+def test_naive_start_is_the_papers(small_lift: Problem) -> None:
+    """Zeros and 10 N, clipped to the bounds."""
+    start = naive_start(small_lift)
+    control, force = small_lift.unpack(start.x)
+    lower, upper = small_lift.bounds()
+    np.testing.assert_array_equal(control, np.clip(0.0, *(small_lift.unpack(bound)[0] for bound in (lower, upper))))
+    assert start.name == "naive" and (force == 10.0).all()
+
+
+def test_naive_force_is_clipped(small_lift: Problem, make_task: Callable[..., LiftTask]) -> None:
+    gentle = Problem(small_lift.team, make_task(max_grasp_force=4.0), small_lift.mesh)
+    assert (gentle.unpack(naive_start(gentle).x)[1] == 4.0).all()
