@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from liftopt import result_files
+from liftopt import result_writer
+from liftopt.checks import Verification
 from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem, Team
@@ -20,7 +21,7 @@ from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.scenario import Scenario
 from liftopt.scene import agents_of, object_of, task_of
 from liftopt.solution import SOLVED, Solution, StartRecord
-from liftopt.verify import CLOSURE_BETWEEN_KNOTS, Verification, verify
+from liftopt.verify import CLOSURE_BETWEEN_KNOTS, verify
 
 Say = Callable[[str], None]
 # Shares of the time that is left: the search for postures, one start of several.
@@ -67,7 +68,7 @@ def lift(scenario: Scenario, *, out: Path | None = None, progress: Say | None = 
     solution = search.solution(best, began, tuple(notes))
     if out is not None:
         say("writing the result")
-        result_files.save(solution, out)
+        result_writer.save(solution, out)
     return solution
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.checks import Verification
 from liftopt.scenario import Scenario
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory
-from liftopt.verify import Verification
 
 Array = npt.NDArray[np.float64]
 SOLVED = "solved"

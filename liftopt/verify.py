@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.checks import AT_KNOTS, Check, Verification
 from liftopt.collocation.constraints import BALANCE_ROWS, UNSERVED_ROW
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
@@ -18,78 +17,9 @@ from liftopt.trajectory import AgentTrajectory
 
 Array = npt.NDArray[np.float64]
 FINER = 10
-AT_KNOTS = 1e-6  # closure [m], balance [N, Nm], limits [their unit]
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
 AT_ENDS = 1e-9
 OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
-
-
-@dataclass(frozen=True)
-class Check:
-    """One requirement: the worst value found, its limit (infinite where it is only reported), and where.
-
-    Attributes:
-        name: of the constraint.
-        value: worst value; violations are positive, 0 where there is room.
-        limit: largest value that passes.
-        unit: of both.
-        where: joint, agent or coordinate, and time.
-    """
-
-    name: str
-    value: float
-    limit: float
-    unit: str
-    where: str
-
-    @property
-    def passed(self) -> bool:
-        """Whether the value is a number within the limit."""
-        return bool(self.value <= self.limit)
-
-
-@dataclass(frozen=True)
-class Verification:
-    """All checks of one point.
-
-    Attributes:
-        checks: the requirements, worst value each.
-        kkt_error: error of the first-order conditions.
-        kkt_tolerance: largest that passes.
-    """
-
-    checks: tuple[Check, ...]
-    kkt_error: float
-    kkt_tolerance: float
-
-    @property
-    def passed(self) -> bool:
-        """Whether every check and the KKT error pass."""
-        return bool(self.kkt_error <= self.kkt_tolerance) and all(check.passed for check in self.checks)
-
-    @property
-    def worst(self) -> Check:
-        """The check with the largest share of its limit."""
-        return max(self.checks, key=lambda check: np.nan_to_num(check.value / check.limit, nan=np.inf))
-
-    @property
-    def max_violation(self) -> float:
-        """The largest value among the checks that hold at the knots to 1e-6."""
-        return max(check.value for check in self.checks if check.limit == AT_KNOTS)
-
-    def describe_failure(self) -> str:
-        """Return what fails, by name, amount and place, in one line."""
-        if all(check.passed for check in self.checks):
-            return f"KKT error {self.kkt_error:.3g}, allowed {self.kkt_tolerance:.3g}"
-        worst = self.worst
-        return f"{worst.name} {worst.value:.3g} {worst.unit}, allowed {worst.limit:.3g} ({worst.where})"
-
-    def check(self, name: str) -> Check:
-        """Return the check of that name; raises KeyError if there is none."""
-        for check in self.checks:
-            if check.name == name:
-                return check
-        raise KeyError(name)
 
 
 def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tolerance: float) -> Verification:
@@ -135,9 +65,9 @@ def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
     between = np.abs(fine.held.wrench[:, served])
     unserved = np.abs(fine.held.wrench[:, [UNSERVED_ROW]])
     return [
-        _worst("balance at the knots", excess, AT_KNOTS, "N, Nm", pick, knots.time),
-        _worst("balance between knots", between, np.inf, "N, Nm", pick, fine.time),
-        _worst("moment no grasp serves", unserved, np.inf, "Nm", [labels[UNSERVED_ROW]], fine.time),
+        _worst("balance at the knots", excess, AT_KNOTS, "SI", pick, knots.time),
+        _worst("balance between knots", between, np.inf, "SI", pick, fine.time),
+        _worst("unserved moment", unserved, np.inf, "Nm", [labels[UNSERVED_ROW]], fine.time),
     ]
 
 
@@ -157,8 +87,8 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
     speed.append(np.abs(held.pose_velocity) - task.pose_velocity)
     agents = [agent.name for agent in motion.agents]
     checks = [
-        _worst("position limits", np.hstack(position), limit, "rad, m", joints + names, motion.time),
-        _worst("speed limits", np.hstack(speed), limit, "rad/s, m/s", joints + names, motion.time),
+        _worst("position limits", np.hstack(position), limit, "SI", joints + names, motion.time),
+        _worst("speed limits", np.hstack(speed), limit, "SI", joints + names, motion.time),
         _worst("torque limits", np.hstack(torque), limit, "Nm", joints, motion.time),
         _worst("grasp force cap", np.stack(force, axis=1), limit, "N", agents, motion.time),
     ]
@@ -179,9 +109,9 @@ def _ends(problem: Problem, motion: Motion) -> list[Check]:
     off = np.nan_to_num(np.abs(held.pose[ends] - np.stack([task.start, task.end])), nan=0.0)
     time = motion.time[ends]
     return [
-        _worst("speed at the ends", np.abs(speed), AT_ENDS, "rad/s, m/s", labels, time),
-        _worst("acceleration at the ends", np.abs(acceleration), AT_ENDS, "rad/s^2, m/s^2", labels, time),
-        _worst("pose at the ends", off, AT_KNOTS, "m, rad", labels[-len(OBJECT_COORDINATES) :], time),
+        _worst("speed at the ends", np.abs(speed), AT_ENDS, "SI", labels, time),
+        _worst("acceleration at the ends", np.abs(acceleration), AT_ENDS, "SI", labels, time),
+        _worst("pose at the ends", off, AT_KNOTS, "SI", labels[-len(OBJECT_COORDINATES) :], time),
     ]
 
 
@@ -201,4 +131,4 @@ def _worst(name: str, values: Array, limit: float, unit: str, labels: list[str],
     """Return the check of the largest entry of ``values`` (times, labels); a NaN is the largest."""
     flat = np.where(np.isnan(values), np.inf, values)
     k, j = np.unravel_index(int(np.argmax(flat)), flat.shape)
-    return Check(name, float(values[k, j]), limit, unit, f"{labels[j]} at t = {time[k]:.3f} s")
+    return Check(name, float(values[k, j]), limit, unit, f"{labels[j]} at {time[k]:.2f} s")

@@ -164,15 +164,6 @@ def test_object_attitude_is_rx_ry_rz(held: LiftedObject, rng: np.random.Generato
             np.testing.assert_allclose(found.grasp_position[k, i], x[k, :3] + rotation @ lever, atol=1e-14)
 
 
-def test_quaternions_are_continuous(held: LiftedObject) -> None:
-    """A motion through half a turn: a sign that flips between samples would tear every interpolation."""
-    times = np.linspace(0.0, 1.0, 200)
-    x = np.zeros((200, 6))
-    x[:, 5] = np.linspace(0.0, 1.9 * np.pi, len(times))
-    found = object_trajectory(held, x, np.zeros_like(x), np.zeros_like(x), np.zeros_like(x))
-    assert (np.sum(found.quaternion[1:] * found.quaternion[:-1], axis=1) > 0.0).all()
-
-
 def test_wrench_is_newton_euler_less_the_grasps(held: LiftedObject, rng: np.random.Generator) -> None:
     """Closed form: m (a - g) - sum f along world axes, I alpha + w x I w - sum r x f about body axes."""
     motion, times, forces = smooth(6, 4), np.linspace(0.0, 2.0, 5), 10.0 * rng.normal(size=(5, 6))

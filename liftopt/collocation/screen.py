@@ -118,7 +118,7 @@ def _reach(team: Team, task: LiftTask, pose: Array, seed: Array) -> tuple[Array,
 def _strength(
     problem: Problem, name: str, pose: Array, seed: Array, deadline: float
 ) -> tuple[Obstacle, Posture] | None:
-    """Find by bisection how many times stronger the agents and grasps must be to hold still there; None if not at all."""
+    """Find by bisection how many times stronger agents and grasps must be to hold still there; None if not at all."""
     if _posture_with(problem, pose, seed, 1.0, deadline):
         return None
     weak, strong, held = 1.0, 1.0, None

@@ -93,6 +93,7 @@ class Plain:
         return float(np.trapezoid(terms, time))
 
     def attitude(self, k: int) -> np.ndarray:
+        """Return R = Rx Ry Rz (3, 3) at a knot."""
         roll, pitch, yaw = self.q[k, -3:]
         return np.asarray(pin.exp3(roll * np.eye(3)[0]) @ pin.exp3(pitch * np.eye(3)[1]) @ pin.exp3(yaw * np.eye(3)[2]))
 

@@ -9,13 +9,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation.guess import PostureSolver, Start, naive_start, posture_starts
+from liftopt.collocation.guess import PostureSolver, Start, naive_start, posture_starts, seed_coordinates
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
-
-
-def seed(team: Team, pose: np.ndarray) -> np.ndarray:
-    return np.concatenate([*(agent.posture for agent in team.agents), np.nan_to_num(pose)])
 
 
 @pytest.mark.parametrize("end", ["start", "end"])
@@ -23,7 +20,10 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
     """Pinocchio: closure, static balance on the five rows, torque and joint limits, the pose asked for."""
     task = make_task(agent_weights=(1.0, 1.0))
     pose = getattr(task, end)
-    posture = PostureSolver(team, task).solve(pose, seed(team, pose), time.monotonic() + 30.0)
+    solver, rng = PostureSolver(team, task), np.random.default_rng(0)
+    problem = Problem(team, task, RestToRestSpline(6).mesh())
+    seeds = (seed_coordinates(problem, pose, rng) for _ in range(6))
+    posture = next(filter(None, (solver.solve(pose, seed, time.monotonic() + 30.0) for seed in seeds)), None)
     assert posture is not None
     at = posture.coordinates[-6:]
     given = ~np.isnan(pose)
@@ -53,7 +53,9 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
 def test_free_coordinates_of_a_pose_are_found(team: Team, make_task: Callable[..., LiftTask]) -> None:
     """NaN leaves fore-aft and sideways to the solver; the height stays the asked one."""
     task = make_task(x=np.nan, agent_weights=(1.0, 1.0))
-    posture = PostureSolver(team, task).solve(task.start, seed(team, task.start), time.monotonic() + 30.0)
+    problem = Problem(team, task, RestToRestSpline(6).mesh())
+    seed = seed_coordinates(problem, task.start, None)
+    posture = PostureSolver(team, task).solve(task.start, seed, time.monotonic() + 30.0)
     assert posture is not None and np.isfinite(posture.coordinates).all()
     assert posture.coordinates[-4] == pytest.approx(0.91, abs=1e-9)
 
@@ -61,8 +63,8 @@ def test_free_coordinates_of_a_pose_are_found(team: Team, make_task: Callable[..
 def test_pose_out_of_reach_has_no_posture(team: Team, make_task: Callable[..., LiftTask]) -> None:
     """Sawyer reaches about 1.3 m with its tool; the object is three metres away from it."""
     task = make_task(x=-1.2, agent_weights=(1.0, 1.0))
-    solver = PostureSolver(team, task)
-    assert solver.solve(task.start, seed(team, task.start), time.monotonic() + 10.0) is None
+    seed = seed_coordinates(Problem(team, task, RestToRestSpline(6).mesh()), task.start, None)
+    assert PostureSolver(team, task).solve(task.start, seed, time.monotonic() + 10.0) is None
 
 
 def test_starts_join_the_postures_at_rest(starts: list[Start], small_lift: Problem) -> None:
@@ -114,3 +116,16 @@ def test_naive_start_is_the_papers(small_lift: Problem) -> None:
 def test_naive_force_is_clipped(small_lift: Problem, make_task: Callable[..., LiftTask]) -> None:
     gentle = Problem(small_lift.team, make_task(max_grasp_force=4.0), small_lift.mesh)
     assert (gentle.unpack(naive_start(gentle).x)[1] == 4.0).all()
+
+
+def test_seeds_spread_within_the_ranges_of_motion(small_lift: Problem, rng: np.random.Generator) -> None:
+    """Without a generator the comfortable postures and the pose; with one, other joints within their limits."""
+    comfortable = seed_coordinates(small_lift, small_lift.task.start, None)
+    agents = small_lift.team.agents
+    np.testing.assert_array_equal(comfortable[:-6], np.concatenate([agent.posture for agent in agents]))
+    np.testing.assert_array_equal(comfortable[-6:], np.nan_to_num(small_lift.task.start))
+    spread = seed_coordinates(small_lift, small_lift.task.start, rng)
+    lower = np.concatenate([agent.limits.q_lower for agent in agents])
+    upper = np.concatenate([agent.limits.q_upper for agent in agents])
+    assert (spread[:-6] >= lower).all() and (spread[:-6] <= upper).all()
+    assert np.abs(spread[:-6] - comfortable[:-6]).max() > 0.1

@@ -1,4 +1,4 @@
-"""A solution on disk: solution.nc (NetCDF-4), scenario.toml and models/*.urdf, whole or not at all."""
+"""A solution written to disk: solution.nc (NetCDF-4), scenario.toml and models/*.urdf, whole or not at all."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import os
 import platform
 import tempfile
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 
 import liftopt
+from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.errors import InputError
 from liftopt.scenario import scenario_to_toml
 from liftopt.solution import Solution
@@ -80,6 +82,7 @@ def _coordinates(solution: Solution) -> dict[str, tuple[str, ...]]:
         "quat": ("x", "y", "z", "w"),
         "twist": ("vx", "vy", "vz", "wx", "wy", "wz"),
         "grasp": tuple(agent.name for agent in solution.agents),
+        "pose": OBJECT_COORDINATES,
     }
 
 
@@ -102,16 +105,35 @@ def _variables(solution: Solution) -> dict[str, Variable]:
         f"{name}_quaternion": (("time", "quat"), held.quaternion, "1", f"orientation of the {name} in the world"),
         f"{name}_velocity": (("time", "twist"), held.velocity, "m/s, rad/s", f"velocity {body}"),
         f"{name}_acceleration": (("time", "twist"), held.acceleration, "m/s^2, rad/s^2", f"acceleration {body}"),
+        f"{name}_pose": (("time", "pose"), held.pose, "m, rad", f"six coordinates of the {name}, R = Rx Ry Rz"),
+        f"{name}_pose_velocity": (("time", "pose"), held.pose_velocity, "m/s, rad/s", "their first derivatives"),
+        f"{name}_pose_acceleration": (
+            ("time", "pose"), held.pose_acceleration, "m/s^2, rad/s^2", "their second derivatives",
+        ),
         "grasp_force": (("time", "grasp", "xyz"), force, "N", f"force of each agent on the {name}, world axes"),
-        "grasp_position": (("time", "grasp", "xyz"), held.grasp_position, "m", f"grasp points of the {name} in the world"),
+        "grasp_position": (("time", "grasp", "xyz"), held.grasp_position, "m", f"grasp points on the {name}, world"),
         "ground_reaction_force": (
-            ("time", "xyz"), solution.ground_reaction_force, "N", "force of the ground on the human, world axes",
+            ("time", "xyz"), solution.ground_reaction_force, "N", "force of the ground on the human, world axes"
         ),
         "ground_reaction_moment": (
             ("time", "xyz"), solution.ground_reaction_moment, "N m",
             "moment of the ground on the human at the foot origin, world axes",
         ),
     }  # fmt: skip
+
+
+def record(solution: Solution) -> dict[str, Any]:
+    """Return what is neither trajectory nor scenario, ready for JSON: how it was found and verified."""
+    return {
+        "outcome": solution.outcome,
+        "objective_weights": solution.objective_weights,
+        "seconds": solution.seconds,
+        "starts": [asdict(start) for start in solution.starts],
+        "kept_start": solution.kept_start,
+        "checks": [asdict(check) for check in solution.verification.checks],
+        "kkt_tolerance": solution.verification.kkt_tolerance,
+        "notes": solution.notes,
+    }
 
 
 def _attributes(solution: Solution) -> dict[str, Any]:
@@ -127,7 +149,7 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "max_violation": solution.verification.max_violation,
         "kkt_error": solution.verification.kkt_error,
         "versions": json.dumps(versions),
-        "notes": json.dumps(solution.notes),
+        "record": json.dumps(record(solution)),
     }
     attributes |= {f"objective_{name}": value for name, value in solution.objective_terms.items()}
     return attributes | {f"{name}_seconds": value for name, value in solution.seconds.items()}
