@@ -67,7 +67,8 @@ class Verification:
         if all(check.passed for check in self.checks):
             return f"KKT error {self.kkt_error:.3g}, allowed {self.kkt_tolerance:.3g}"
         worst = self.worst
-        return f"{worst.name} {worst.value:.3g} {worst.unit}, allowed {worst.limit:.3g} ({worst.where})"
+        unit = "" if worst.unit == "SI" else f" {worst.unit}"
+        return f"{worst.name} {worst.value:.3g}{unit}, allowed {worst.limit:.3g} ({worst.where})"
 
     def check(self, name: str) -> Check:
         """Return the check of that name; raises KeyError if there is none."""

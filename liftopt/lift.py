@@ -14,7 +14,7 @@ from liftopt.checks import Verification
 from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.screen import screen
+from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
@@ -107,7 +107,7 @@ class _Search:
         options = self.scenario.solver
         until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
         starts = posture_starts(self.problem, max(1, options.starts - 1), options.seed, until, self.say)
-        if not starts and (hindered := self._hindered()):
+        if (not starts or too_fast(self.problem)) and (hindered := self._hindered()):
             return hindered
         self.prepared = time.monotonic()
         starts = [*starts, naive_start(self.problem)][: options.starts]
@@ -190,8 +190,10 @@ class _Search:
 
     def _hindered(self) -> _Candidate | None:
         """Return why no posture was found at an end, with the nearest motion, or None if nothing is in the way."""
-        self.say("no posture found: looking for what is in the way")
+        self.say("looking for what is in the way")
         obstacles, (first, last) = screen(self.problem, self.scenario.solver.seed, self.deadline)
+        if obstacle := too_fast(self.problem):
+            obstacles.append(obstacle)
         if not obstacles:
             return None
         layout, constraints = self.problem.layout, self.problem.constraints

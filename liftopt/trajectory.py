@@ -86,12 +86,13 @@ def agent_trajectory(agent: Agent, q: Array, v: Array, a: Array, force: Array) -
         pin.forwardKinematics(model, data, full_q[k])
         point[k] = pin.updateFramePlacement(model, data, frame).translation
         free = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
-        # The wrench that the first joint transmits holds the whole agent against gravity and its own motion.
+        # The wrench that the first joint transmits holds all that moves against gravity and its own motion; what is
+        # fixed to the ground (a robot's pedestal) is not part of it.
         root = data.oMi[1].act(data.f[1])
         tau[k] = free + jacobian.T @ force[k]
         ground_force[k] = root.linear + force[k]
-        ground_moment[k] = root.angular - np.cross(p_world_base, root.linear)
-        ground_moment[k] += np.cross(point[k] - p_world_base, force[k])
+        ground_moment[k] = root.angular - pin.skew(p_world_base) @ root.linear
+        ground_moment[k] += pin.skew(point[k] - p_world_base) @ force[k]
     return AgentTrajectory(
         agent.name, tuple(list(model.names)[1:]), moving, full_q, full_v, full_a, tau, np.asarray(force, dtype=float),
         point, ground_force, ground_moment, agent.limits,
@@ -119,7 +120,7 @@ def object_trajectory(
             points[k, i] = data.oMf[frame].translation
             force = forces[k, 3 * i : 3 * i + 3]
             generalized[:3] -= rotation.T @ force
-            generalized[3:] -= rotation.T @ np.cross(points[k, i] - x[k, :3], force)
+            generalized[3:] -= rotation.T @ (pin.skew(points[k, i] - x[k, :3]) @ force)
         quaternion[k] = q[3:]
         velocity[k] = [*xdot[k, :3], *(rotation @ v[3:])]
         acceleration[k] = [*xddot[k, :3], *(rotation @ a[3:])]
@@ -136,9 +137,9 @@ def free_flyer_state(x: Array, xdot: Array, xddot: Array) -> tuple[Array, Array,
     omega = about_x * xdot[3] + after_roll
     alpha = about_x * xddot[3] + about_y * xddot[4] + about_z * xddot[5]
     # The axes of roll and pitch turn with the rotations that follow them.
-    alpha += np.cross(about_x * xdot[3], after_roll) + np.cross(about_y * xdot[4], about_z * xdot[5])
+    alpha += pin.skew(about_x * xdot[3]) @ after_roll + pin.skew(about_y * xdot[4]) @ (about_z * xdot[5])
     linear = rotation.T @ xdot[:3]
     q = np.concatenate([x[:3], pin.Quaternion(rotation).coeffs()])
     v = np.concatenate([linear, omega])
-    a = np.concatenate([rotation.T @ xddot[:3] - np.cross(omega, linear), alpha])
+    a = np.concatenate([rotation.T @ xddot[:3] - pin.skew(omega) @ linear, alpha])
     return q, v, a

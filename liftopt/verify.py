@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.checks import AT_KNOTS, Check, Verification
-from liftopt.collocation.constraints import BALANCE_ROWS, UNSERVED_ROW
+from liftopt.collocation.constraints import BALANCE_ROWS, served_rows
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem
@@ -56,19 +56,21 @@ def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64])
 
 
 def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
-    """Eq. 17 on the five rows that point grasps serve; the sixth, and all between knots, are reported."""
-    tolerance = problem.task.balance_tolerance
-    served = [r for r in range(6) if r != UNSERVED_ROW or tolerance > 0]
+    """Eq. 17 on the rows that the grasps serve; the other one, and all between knots, are reported."""
+    tolerance, other = problem.task.balance_tolerance, problem.team.held.unserved_row()
+    served = served_rows(problem.team.held, tolerance)
     labels = [f"{knots.held.name} {row}" for row in BALANCE_ROWS]
     pick = [labels[r] for r in served]
     excess = np.maximum(np.abs(knots.held.wrench[:, served]) - tolerance, 0.0)
     between = np.abs(fine.held.wrench[:, served])
-    unserved = np.abs(fine.held.wrench[:, [UNSERVED_ROW]])
-    return [
+    checks = [
         _worst("balance at the knots", excess, AT_KNOTS, "SI", pick, knots.time),
         _worst("balance between knots", between, np.inf, "SI", pick, fine.time),
-        _worst("unserved moment", unserved, np.inf, "Nm", [labels[UNSERVED_ROW]], fine.time),
     ]
+    if other is not None:
+        unserved = np.abs(fine.held.wrench[:, [other]])
+        checks.append(_worst("unserved moment", unserved, np.inf, "Nm", [labels[other]], fine.time))
+    return checks
 
 
 def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list[Check]:

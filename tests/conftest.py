@@ -2,12 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from liftopt.scenario import load_scenario
+from liftopt.solution import Solution
+
+
+class Solved(NamedTuple):
+    """A real solution and the folder it was saved in; neither is to be changed."""
+
+    solution: Solution
+    folder: Path
+
+
+@pytest.fixture(scope="session")
+def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
+    """Return a function that solves a shipped scenario with overrides, each once a session."""
+    from liftopt.lift import lift
+
+    @cache
+    def solve(name: str, *overrides: str) -> Solved:
+        folder = tmp_path_factory.mktemp("result")
+        return Solved(lift(load_scenario(name, overrides), out=folder), folder)
+
+    return solve
 
 
 def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:

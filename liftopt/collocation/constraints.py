@@ -18,8 +18,6 @@ from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
 
 Array = npt.NDArray[np.float64]
-# Row of the balance that point grasps in one plane cannot serve: the moment about the object's own x axis.
-UNSERVED_ROW = 3
 BALANCE_ROWS = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
 
 
@@ -75,6 +73,11 @@ class Constraints:
     combine: sp.csc_matrix
     linear: sp.csc_matrix
 
+    def same_rows(self, other: Constraints) -> bool:
+        """Whether the rows are the same functions, scales included, so that only bounds and parameters may differ."""
+        pairs = ((self.combine, other.combine), (self.linear, other.linear))
+        return self is other or all(a.shape == b.shape and (a != b).nnz == 0 for a, b in pairs)
+
     @property
     def lower(self) -> Array:
         """Lower bounds (n_g,)."""
@@ -105,7 +108,7 @@ def build_constraints(
         _keep_in(rows, i, agent)
         _grasp_force(rows, i, agent.name, task.max_grasp_force)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
-    _balance(rows, len(agents), held.name, task.balance_tolerance)
+    _balance(rows, len(agents), held, task.balance_tolerance)
     _velocity(rows, len(agents), held.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
     n_c = len(layout.mesh.phase) * sum(outputs)
     return Constraints(
@@ -155,14 +158,19 @@ def _grasp_force(rows: _Rows, i: int, who: str, cap: float) -> None:
     rows.close("grasp_force", who, ("norm",), np.array([-np.inf]), np.ones(1), knots)
 
 
-def _balance(rows: _Rows, held: int, who: str, tolerance: float) -> None:
-    """Eq. 17 [N, Nm]: with a tolerance all six rows as in the paper, with equality the five that can be met."""
-    served = [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != UNSERVED_ROW]
+def served_rows(held: LiftedObject, tolerance: float) -> list[int]:
+    """Return the rows of the balance to ask for: all six with a tolerance, as in the paper, else those served."""
+    return [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != held.unserved_row()]
+
+
+def _balance(rows: _Rows, part: int, held: LiftedObject, tolerance: float) -> None:
+    """Eq. 17 [N, Nm]."""
+    served = served_rows(held, tolerance)
     knots = len(rows.layout.mesh.phase)
     for k in range(knots):
-        rows.combine += [(rows.n + len(served) * k + j, rows.output(held, k, r), 1.0) for j, r in enumerate(served)]
+        rows.combine += [(rows.n + len(served) * k + j, rows.output(part, k, r), 1.0) for j, r in enumerate(served)]
     bound = np.full(len(served), tolerance)
-    rows.close("balance", who, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, knots)
+    rows.close("balance", held.name, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, knots)
 
 
 def _velocity(rows: _Rows, part: int, who: str, labels: tuple[str, ...], limit: Array) -> None:

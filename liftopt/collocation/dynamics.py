@@ -62,10 +62,14 @@ class Topology:
         digest.update((self.entries != 0.0).tobytes())
         digest.update(np.asarray(self.model.gravity.linear).round(12).tobytes())
         for j in range(1, self.model.njoints):
-            digest.update(f"{self.model.joints[j].shortname()} {self.model.parents[j]};".encode())
+            joint = self.model.joints[j]
+            digest.update(f"{joint.shortname()} {self.model.parents[j]};".encode())
+            if joint.shortname().endswith("Unaligned"):
+                digest.update(np.asarray(joint.extract().axis, dtype=float).tobytes())
             digest.update((clean_rotation(self.model.jointPlacements[j].rotation) + 0.0).tobytes())
         for name in self.frames:
-            digest.update(str(self.model.frames[self.model.getFrameId(name)].parentJoint).encode())
+            digest.update(f"{self.model.frames[self.model.getFrameId(name)].parentJoint};".encode())
+        digest.update(np.asarray(self.model.armature, dtype=float).tobytes())
         return digest.hexdigest()
 
 

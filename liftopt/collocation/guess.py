@@ -29,7 +29,7 @@ QUINTIC_PEAK = 1.875
 POSTURE_WEIGHT = 1e-2
 # A posture takes some 20 iterations; one that takes more is hardly ever found.
 MAX_ITERATIONS = 100
-# Mean of the static torques at both ends, squared, over the motion.
+# Holding still at each end for half the time, halved again: as much as the objective of the blend on average.
 STATIC_WEIGHT = 0.25
 # Seeds after which an end that no posture was found for is given up.
 HOPELESS = 4
@@ -60,7 +60,7 @@ class Posture:
     Attributes:
         coordinates: (n,) joints of every agent, then the object's six coordinates.
         force: (3 agents,) grasp forces on the object [N].
-        cost: weighted squared torques [N^2 m^2].
+        cost: objective of holding still for the task's duration.
     """
 
     coordinates: Array
@@ -107,7 +107,7 @@ def posture_starts(
     Args:
         problem: the lift.
         count: how many are wanted.
-        seed: of the random seeds; equal seeds give equal starts.
+        seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
         deadline: ``time.monotonic`` value past which the search stops.
         say: hears of progress.
     """

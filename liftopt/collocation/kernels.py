@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -105,11 +106,12 @@ def cache_folder() -> Path | None:
     return folder if _is_ours(folder) else None
 
 
-def find_compiler() -> str | None:
-    """Return the path of the C compiler: ``CC`` if set (empty: none), else the first of cc, gcc, clang found."""
+def find_compiler() -> list[str] | None:
+    """Return the command of the C compiler: ``CC`` if set (empty: none), else the first of cc, gcc, clang found."""
     if "CC" in os.environ:
-        return shutil.which(os.environ["CC"]) if os.environ["CC"] else None
-    return next((path for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None)
+        command = shlex.split(os.environ["CC"])
+        return command if command and shutil.which(command[0]) else None
+    return next(([path] for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None)
 
 
 def _key(builder: Builder, topology: Topology) -> str:
@@ -131,7 +133,8 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
     if compiler is None:
         say("no C compiler found: CasADi's virtual machine evaluates the dynamics, several times slower")
         return interpreted
-    say("compiling the equations of motion (once; kept for later runs)")
+    kept = "once; kept for later runs" if folder is not None else "there is no private cache folder to keep it in"
+    say(f"compiling the equations of motion ({kept})")
     kernels = dict(interpreted)
     with tempfile.TemporaryDirectory(prefix="liftopt-") as work:
         jobs = {key: _start_compiler(compiler, Path(work), key, f) for key, f in functions.items()}
@@ -144,11 +147,14 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
             _seal(built)
             # Without a folder to keep it the library is loaded from the work folder; it stays mapped when that goes.
             path = _publish(built, folder / built.name) if folder is not None else built
-            kernels[key] = _load(path, key) or interpreted[key]
+            if kernel := _load(path, key):
+                kernels[key] = kernel
+            else:
+                say("what the C compiler made cannot be loaded: using CasADi's virtual machine")
     return kernels
 
 
-def _start_compiler(compiler: str, work: Path, key: str, functions: KnotFunctions) -> subprocess.Popen[str]:
+def _start_compiler(compiler: list[str], work: Path, key: str, functions: KnotFunctions) -> subprocess.Popen[str]:
     import casadi as ca
 
     generator = ca.CodeGenerator(f"kernel_{key}.c")
@@ -156,7 +162,7 @@ def _start_compiler(compiler: str, work: Path, key: str, functions: KnotFunction
         source = getattr(functions, role)
         generator.add(ca.Function(_symbol(role, key), source.sx_in(), source.call(source.sx_in())))
     generator.generate(f"{work}{os.sep}")
-    command = [compiler, *FLAGS, str(work / f"kernel_{key}.c"), "-o", str(work / f"{key}.so"), "-lm"]
+    command = [*compiler, *FLAGS, str(work / f"kernel_{key}.c"), "-o", str(work / f"{key}.so"), "-lm"]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
 
@@ -165,7 +171,8 @@ def _symbol(role: str, key: str) -> str:
 
 
 def _seal(path: Path) -> None:
-    """Append the digest of the file's bytes; a loader of shared libraries ignores what follows them."""
+    """Append the digest of the file's bytes, which a loader of shared libraries ignores, and make it private."""
+    path.chmod(0o600)
     with path.open("ab") as file:
         file.write(hashlib.sha256(path.read_bytes()).digest())
 
@@ -173,12 +180,14 @@ def _seal(path: Path) -> None:
 def _publish(built: Path, target: Path) -> Path:
     """Copy beside the target and rename, so that the target is whole whenever it exists; fall back to ``built``."""
     try:
-        handle, beside = tempfile.mkstemp(dir=target.parent, prefix=".new-")
-        with os.fdopen(handle, "wb") as file:
-            file.write(built.read_bytes())
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(beside, target)
+        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".new-") as beside:
+            copy = Path(beside) / target.name
+            with copy.open("wb") as file:
+                file.write(built.read_bytes())
+                file.flush()
+                os.fsync(file.fileno())
+            copy.chmod(0o600)
+            os.replace(copy, target)
     except OSError:
         return built
     return target

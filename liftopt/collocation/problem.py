@@ -14,17 +14,18 @@ import numpy.typing as npt
 
 from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
 from liftopt.collocation.constraints import Constraints, build_constraints
-from liftopt.collocation.dynamics import Topology, agent_functions, object_functions
+from liftopt.collocation.dynamics import STRUCTURAL_ZERO, Topology, agent_functions, object_functions
 from liftopt.collocation.kernels import Kernel, load_kernels
 from liftopt.collocation.layout import OBJECT_SIZE, Layout
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask
+from liftopt.errors import ModelError
 from liftopt.multibody.agent import Agent, LiftedObject
 
 Array = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Team:
     """Agents, the object they hold, and the kernels of their dynamics.
 
@@ -43,6 +44,7 @@ class Team:
     @staticmethod
     def of(agents: tuple[Agent, ...], held: LiftedObject, say: Callable[[str], None] | None = None) -> Team:
         """Load or compile the kernels; ``say`` hears of it when that takes long."""
+        _check(agents, held)
         topologies = [Topology.of(agent.reduced(), (agent.grasp_frame,)) for agent in agents]
         topologies.append(Topology.of(held.model, held.grasp_frames))
         builders = [agent_functions] * len(agents) + [object_functions]
@@ -55,7 +57,7 @@ class Team:
         return tuple(len(agent.posture) for agent in self.agents)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """A team's task on a mesh.
 
@@ -95,20 +97,26 @@ class Problem:
     @cached_property
     def parameters(self) -> Array:
         """Parameter vector of the NLP: T, the models' entries and the weights of the objective."""
-        task, packed = self.task, []
-        for i, part in enumerate(self.parts):
-            n = self.team.coordinates[i] if self._is_agent(i) else OBJECT_SIZE
-            # The integrals over time are T times those over the phase, and qdd = q'' / T**2.
-            y_weight = np.zeros(part.kernel.n_y)
-            y_weight[:n] = self.posture_weight
-            y_weight[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
-            c_weight = np.zeros(part.kernel.n_squared)
-            if self._is_agent(i):
-                y_weight[3 * n :] = task.force_weight * task.duration
-                c_weight[:] = task.agent_weights[i] * task.duration
-            kernel = np.concatenate([[task.duration], self.team.topologies[i].parameters])
-            packed.append(PartParameters(kernel, c_weight, y_weight))
+        packed = []
+        for i in range(len(self.parts)):
+            kernel = np.concatenate([[self.task.duration], self.team.topologies[i].parameters])
+            packed.append(PartParameters(kernel, *self.weights(i)))
         return pack(packed)
+
+    def weights(self, part: int) -> tuple[Array, Array]:
+        """Return the weights of a part's squared leading outputs and squared knot variables in the objective.
+
+        The integrals over time are T times those over the phase, and qdd = q'' / T**2.
+        """
+        task, kernel, agent = self.task, self.team.kernels[part], part < len(self.team.agents)
+        n = self.team.coordinates[part] if agent else OBJECT_SIZE
+        c_weight, y_weight = np.zeros(kernel.n_squared), np.zeros(kernel.n_y)
+        y_weight[:n] = self.posture_weight
+        y_weight[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
+        if agent:
+            y_weight[3 * n :] = task.force_weight * task.duration
+            c_weight[:] = task.agent_weights[part] * task.duration
+        return c_weight, y_weight
 
     def bounds(self) -> tuple[Array, Array]:
         """Return lower and upper bounds (n_x,) of the unknowns.
@@ -139,5 +147,14 @@ class Problem:
         lower, upper = self.bounds()
         return np.clip(x, lower, upper)
 
-    def _is_agent(self, part: int) -> bool:
-        return part < len(self.team.agents)
+
+def _check(agents: tuple[Agent, ...], held: LiftedObject) -> None:
+    """Refuse models that the equations do not hold for."""
+    if len(agents) != len(held.grasp_frames):
+        raise ModelError(f"{held.name}: {len(held.grasp_frames)} grasp frames for {len(agents)} agents; give one each")
+    if np.abs(held.model.inertias[1].lever).max() > STRUCTURAL_ZERO:
+        raise ModelError(f"{held.name}: its body frame must be at its centre of mass")
+    for agent in agents:
+        weak = (agent.limits.tau_lower >= 0) | (agent.limits.tau_upper <= 0)
+        for joint in np.array(agent.moving_joints)[weak]:
+            raise ModelError(f"{joint}: torque limits must allow some torque in both directions")

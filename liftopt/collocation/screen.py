@@ -1,4 +1,4 @@
-"""Why no posture holds the object at an end of the lift: out of reach, or too weak, by name and amount."""
+"""What makes a lift impossible before any solve: out of reach, too weak, or too fast, by name and amount."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from scipy.optimize import least_squares
 from liftopt.collocation.guess import Posture, PostureSolver, seed_coordinates
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.task import LiftTask
+from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.trajectory import free_flyer_state
 
 Array = npt.NDArray[np.float64]
 REACHED = 1e-4  # [m]
-SEEDS = 6
+SEEDS = 4
+MAX_EVALUATIONS = 200
+STEP = 1e-6
 # Pulls the search toward the seed, too weakly to matter where the grasp can be reached.
 REGULARISATION = 1e-4
 STRONGEST = 64.0
@@ -26,15 +28,14 @@ STRONGEST = 64.0
 
 @dataclass(frozen=True)
 class Obstacle:
-    """What is in the way at one end.
+    """What is in the way.
 
     Attributes:
-        constraint: ``"closure"``, ``"torque"`` or ``"grasp_force"``.
-        who: agent or joint.
+        constraint: ``"closure"``, ``"torque"``, ``"grasp_force"`` or ``"velocity"``.
+        who: agent, joint or object.
         amount: how far it is from being met, in ``unit``.
         unit: of ``amount``; ``"times the limit"`` for strength.
         message: one sentence.
-        posture: the nearest posture found.
     """
 
     constraint: str
@@ -42,7 +43,23 @@ class Obstacle:
     amount: float
     unit: str
     message: str
-    posture: Posture
+
+
+def too_fast(problem: Problem) -> Obstacle | None:
+    """Return how much longer the lift must last for the object's speed limit, or None if it lasts long enough."""
+    task = problem.task
+    intervals = len(problem.mesh.phase) - 1
+    # From rest to rest on N intervals the control points move on N - 2 of them.
+    needed = np.abs(task.end - task.start) / task.pose_velocity * intervals / (intervals - 2)
+    shortest = float(np.nanmax(needed))
+    if shortest <= task.duration:
+        return None
+    which, held = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.held.name
+    text = (
+        f"too fast: the {held} would exceed its speed limit along {which}; "
+        f"the lift must last at least {shortest:.2f} s, not {task.duration:g} s"
+    )
+    return Obstacle("velocity", held, shortest - task.duration, "s", text)
 
 
 def screen(problem: Problem, seed: int, deadline: float) -> tuple[list[Obstacle], list[Posture]]:
@@ -53,7 +70,8 @@ def screen(problem: Problem, seed: int, deadline: float) -> tuple[list[Obstacle]
         seed: of the random seeds.
         deadline: ``time.monotonic`` value past which the search stops.
     """
-    obstacles, postures = [], []
+    obstacles: list[Obstacle] = []
+    postures: list[Posture] = []
     for name, pose in (("start", problem.task.start), ("end", problem.task.end)):
         obstacle, posture = _screen_end(problem, name, pose, np.random.default_rng(seed), deadline)
         postures.append(posture)
@@ -79,40 +97,71 @@ def _screen_end(
         worst = int(np.argmax(gaps))
         who = team.agents[worst].name
         text = f"out of reach at the {name} of the lift: the {who}'s grasp stays {gaps[worst]:.3f} m short"
-        return Obstacle("closure", who, float(gaps[worst]), "m", text, near), near
+        return Obstacle("closure", who, float(gaps[worst]), "m", text), near
     return _strength(problem, name, pose, nearest, deadline) or (None, near)
 
 
 def _reach(team: Team, task: LiftTask, pose: Array, seed: Array) -> tuple[Array, Array]:
     """Return the coordinates that bring all grasps nearest, and the gap left to each agent [m]."""
-    models = [agent.reduced() for agent in team.agents]
-    datas, held = [model.createData() for model in models], team.held
-    held_data = held.model.createData()
-    free = np.isnan(pose)
-    lower = np.concatenate([*(agent.limits.q_lower for agent in team.agents), task.pose_lower[free]])
-    upper = np.concatenate([*(agent.limits.q_upper for agent in team.agents), task.pose_upper[free]])
-    n = len(seed) - OBJECT_SIZE
-    rest = np.zeros(OBJECT_SIZE)
-
-    def gaps(z: Array) -> Array:
-        x = pose.copy()
-        x[free] = z[n:]
-        pin.framesForwardKinematics(held.model, held_data, free_flyer_state(x, rest, rest)[0])
-        out, at = [], 0
-        for agent, model, data, frame in zip(team.agents, models, datas, held.grasp_frames, strict=True):
-            pin.framesForwardKinematics(model, data, z[at : at + model.nq])
-            at += model.nq
-            target = held_data.oMf[held.model.getFrameId(frame)].translation
-            out.append(data.oMf[model.getFrameId(agent.grasp_frame)].translation - target)
-        return np.concatenate(out)
-
-    start = np.clip(np.concatenate([seed[:n], seed[n:][free]]), lower, upper)
+    gaps = _Gaps(team, pose)
+    lower = np.concatenate([*(agent.limits.q_lower for agent in team.agents), task.pose_lower[gaps.free]])
+    upper = np.concatenate([*(agent.limits.q_upper for agent in team.agents), task.pose_upper[gaps.free]])
+    start = np.clip(np.concatenate([seed[: gaps.n], seed[gaps.n :][gaps.free]]), lower, upper)
     found = least_squares(
-        lambda z: np.concatenate([gaps(z), REGULARISATION * (z - start)]), start, bounds=(lower, upper)
+        lambda z: np.concatenate([gaps(z), REGULARISATION * (z - start)]),
+        start,
+        lambda z: np.vstack([gaps.slope(z), REGULARISATION * np.eye(len(z))]),
+        bounds=(lower, upper),
+        max_nfev=MAX_EVALUATIONS,
     )
-    whole = np.concatenate([found.x[:n], pose])
-    whole[n:][free] = found.x[n:]
-    return whole, np.linalg.norm(gaps(found.x).reshape(-1, 3), axis=1)
+    return gaps.coordinates(found.x), np.linalg.norm(gaps(found.x).reshape(-1, 3), axis=1)
+
+
+class _Gaps:
+    """Vectors from the object's grasp points to the agents', as functions of joints and the pose's free coordinates."""
+
+    def __init__(self, team: Team, pose: Array) -> None:
+        self.team, self.pose, self.free = team, pose, np.flatnonzero(np.isnan(pose))
+        self.models = [agent.reduced() for agent in team.agents]
+        self.n = sum(model.nq for model in self.models)
+
+    def coordinates(self, z: Array) -> Array:
+        """Return joints and all six coordinates of the object."""
+        whole = np.concatenate([z[: self.n], self.pose])
+        whole[self.n + self.free] = z[self.n :]
+        return whole
+
+    def __call__(self, z: Array) -> Array:
+        held = self.team.held
+        data = held.model.createData()
+        at_rest = np.zeros(OBJECT_SIZE)
+        state, _, _ = free_flyer_state(self.coordinates(z)[self.n :], at_rest, at_rest)
+        pin.framesForwardKinematics(held.model, data, state)
+        targets = [data.oMf[held.model.getFrameId(name)].translation for name in held.grasp_frames]
+        return np.concatenate([point - target for (point, _), target in zip(self._arms(z), targets, strict=True)])
+
+    def slope(self, z: Array) -> Array:
+        """Return the Jacobian (3 agents, len(z)); the free coordinates by central differences."""
+        jacobian, at = np.zeros((3 * len(self.models), len(z))), 0
+        for i, (_, slope) in enumerate(self._arms(z)):
+            jacobian[3 * i : 3 * i + 3, at : at + slope.shape[1]] = slope
+            at += slope.shape[1]
+        for j in range(self.n, len(z)):
+            step = np.zeros(len(z))
+            step[j] = STEP
+            jacobian[:, j] = (self(z + step) - self(z - step)) / (2 * STEP)
+        return jacobian
+
+    def _arms(self, z: Array) -> list[tuple[Array, Array]]:
+        arms, at = [], 0
+        for agent, model in zip(self.team.agents, self.models, strict=True):
+            data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+            q = z[at : at + model.nq]
+            slope = pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3].copy()
+            pin.framesForwardKinematics(model, data, q)
+            arms.append((data.oMf[frame].translation.copy(), slope))
+            at += model.nq
+        return arms
 
 
 def _strength(
@@ -134,7 +183,7 @@ def _strength(
     constraint, who = _tightest(problem, held)
     what = "torque limit of" if constraint == "torque" else "grasp force cap of"
     text = f"too weak at the {name} of the lift: holding still needs {strong:.2f} times the {what} {who}"
-    return Obstacle(constraint, who, strong, "times the limit", text, held), held
+    return Obstacle(constraint, who, strong, "times the limit", text), held
 
 
 def _posture_with(problem: Problem, pose: Array, seed: Array, factor: float, deadline: float) -> Posture | None:

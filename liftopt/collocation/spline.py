@@ -16,6 +16,7 @@ from scipy.interpolate import BSpline
 
 Array = npt.NDArray[np.float64]
 DEGREE = 3
+FEWEST = 6
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,10 @@ class RestToRestSpline:
     """
 
     intervals: int
+
+    def __post_init__(self) -> None:
+        if self.intervals < FEWEST:
+            raise ValueError(f"a motion from rest to rest needs at least {FEWEST} intervals, not {self.intervals}")
 
     @property
     def n_knots(self) -> int:

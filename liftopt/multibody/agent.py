@@ -8,7 +8,13 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from liftopt.errors import ModelError
+
 Array = npt.NDArray[np.float64]
+
+
+# Grasp points nearer to a line than this are on it [m].
+SAME_LINE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -91,3 +97,24 @@ class LiftedObject:
     urdf: str
     model: pin.Model
     grasp_frames: tuple[str, ...]
+
+    def unserved_row(self) -> int | None:
+        """Return which of the six rows of balance the point grasps cannot serve; None if they serve them all.
+
+        Forces at points on one line cannot turn the body about that line.
+
+        Raises:
+            ModelError: the points lie on a line that is not parallel to an axis of the body.
+        """
+        points = [self.model.frames[self.model.getFrameId(name)].placement.translation for name in self.grasp_frames]
+        spread = np.array(points) - points[0]
+        _, extents, axes = np.linalg.svd(np.atleast_2d(spread))
+        if len(extents) > 1 and extents[1] > SAME_LINE:
+            return None
+        along = np.flatnonzero(np.abs(axes[0]) > SAME_LINE)
+        if len(along) > 1:
+            raise ModelError(
+                f"{self.name}: the grasp points lie on a line along {np.round(axes[0], 3).tolist()} in the body; "
+                "turn the body's frame so that this is one of its axes"
+            )
+        return 3 + int(along[0])

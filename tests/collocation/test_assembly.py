@@ -235,7 +235,7 @@ def test_parameters_alone_change_subject_weights_and_period(
 ) -> None:
     """The functions of one problem at another's parameters give the other's plain objective."""
     one = Problem(arm_team, make_task(), RestToRestSpline(6).mesh())
-    heavy = make_box(np.array([[-0.35, 0.01, -0.06], [0.3, -0.02, -0.05]]), 8.0)
+    heavy = make_box(np.array([[-0.35, 0.01, -0.06], [0.3, 0.01, -0.06]]), 8.0)
     topology = Topology.of(heavy.model, heavy.grasp_frames)
     team = replace(arm_team, held=heavy, topologies=(*arm_team.topologies[:-1], topology))
     other = Problem(team, make_task(duration=3.1, acceleration_weight=2.0, force_weight=0.3, agent_weights=(0.2, 4.0)),

@@ -185,7 +185,7 @@ def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) 
     path.unlink()
     compiler = find_compiler()
     assert compiler is not None
-    subprocess.run([compiler, "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
+    subprocess.run([*compiler, "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
     path.chmod(0o600)
     kernels._seal(path)
     assert_right(load_tiny())
@@ -250,7 +250,7 @@ def test_compiler_that_writes_nothing_falls_back(cold: Path, monkeypatch: pytest
     "umask",
     [
         0o022,
-        pytest.param(0o002, marks=pytest.mark.xfail(strict=True, reason="what the group can write is not loaded")),
+        0o002,
     ],
     ids=["private", "group"],
 )
@@ -270,7 +270,6 @@ def test_unusable_cache_still_compiles(umask: int, tmp_path: Path, monkeypatch: 
 
 
 @needs_compiler
-@pytest.mark.xfail(strict=True, reason="the copy beside the target stays")
 def test_full_disk_leaves_no_temporary_file(cold: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The kernel is loaded all the same."""
 
@@ -283,10 +282,9 @@ def test_full_disk_leaves_no_temporary_file(cold: Path, monkeypatch: pytest.Monk
 
 
 @needs_compiler
-@pytest.mark.xfail(strict=True, reason="CC is taken for one path")
 def test_compiler_with_arguments_is_understood(cold: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """CC holds a command and its arguments by convention, such as ``ccache gcc``."""
-    monkeypatch.setenv("CC", f"{find_compiler()} -O0")
+    monkeypatch.setenv("CC", f"{(find_compiler() or [])[0]} -O0")
     assert load_tiny().compiled
 
 

@@ -51,6 +51,8 @@ class Ipopt:
         problem = problem or self.problem
         lower, upper = problem.bounds()
         constraints = problem.constraints
+        if not constraints.same_rows(self.problem.constraints):
+            raise SolverError("the problem has other constraint rows than the one this solver was built for")
         arguments = dict(x0=x0, p=problem.parameters, lbx=lower, ubx=upper)
         arguments |= dict(lbg=constraints.lower, ubg=constraints.upper)
         if warm is not None:

@@ -1,0 +1,1 @@
+"""What a solved lift asks of the person: share of strength, posture scores and lifting guides, each with its scope."""

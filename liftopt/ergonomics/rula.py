@@ -1,0 +1,116 @@
+"""RULA, the rapid upper limb assessment, of a posture over time.
+
+Source: McAtamney & Corlett (1993), Applied Ergonomics 24:91-99. What the method leaves to the observer's eye, or the
+model does not have, is decided here and listed in ``ASSUMPTIONS``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.ergonomics.posture import Array, Posture
+from liftopt.ergonomics.rula_tables import TABLE_A, TABLE_B, TABLE_C
+
+Scores = npt.NDArray[np.int64]
+
+NEUTRAL = 5.0  # deg; less is taken for "neutral", "erect", "not bent from the midline"
+TURNED = 10.0  # deg; a trunk turned or bent sideways by more counts as such
+ABDUCTED = 20.0  # deg out of the sagittal plane
+TWISTED = 45.0  # deg from the middle of forearm rotation; more is "near the end of the range"
+OUT_TO_THE_SIDE = 0.05  # m from the shoulder joint to the side of the body
+
+ASSUMPTIONS = (
+    f'"Neutral" wrist, "erect" trunk and "not bent from the midline" mean within {NEUTRAL:g}°; a turn or side bend of '
+    f"the trunk counts from {TURNED:g}°. Leaning back counts like leaning forward.",
+    "Flexion of the upper arm is measured against the trunk in the trunk's sagittal plane; it counts as abducted from "
+    f"{ABDUCTED:g}° out of that plane. A raised shoulder is not in the model and is not scored; no support of the arm.",
+    f"The lower arm works across the midline where the wrist is past it, out to the side where the wrist is more than "
+    f"{100 * OUT_TO_THE_SIDE:g} cm outside the shoulder joint.",
+    f"The forearm is near the end of its range beyond {TWISTED:g}° from the middle of pronation and supination.",
+    "The model has no neck: the head is scored as neutral (1), though a person watching the object bends it. Legs: "
+    "standing evenly on both feet (1).",
+    "Force: magnitude of the hand force as a mass, intermittent: 0 below 2 kg, 1 up to 10 kg, 2 above. Muscle use: one "
+    "lift, neither held over a minute nor repeated over four times a minute (0); a repeated lift adds 1 to both parts, "
+    "and 1 more for a force of 2 kg or more.",
+    "Only the right arm, which lifts, is scored.",
+)
+ACTION = {
+    1: "acceptable if not maintained or repeated for long",
+    2: "acceptable if not maintained or repeated for long",
+    3: "investigate further; changes may be needed",
+    4: "investigate further; changes may be needed",
+    5: "investigate and change soon",
+    6: "investigate and change soon",
+    7: "investigate and change immediately",
+}
+
+
+@dataclass(frozen=True)
+class Rula:
+    """Scores (K,) of every step of RULA; ``grand`` runs from 1 (acceptable) to 7 (change immediately).
+
+    Attributes:
+        upper_arm, lower_arm, wrist, wrist_twist: of the right arm.
+        neck, trunk, legs: of the body.
+        force: of the hand force.
+        arm_with_force, body_with_force: scores C and D, the rows and columns of the last table.
+        grand: the result.
+    """
+
+    upper_arm: Scores
+    lower_arm: Scores
+    wrist: Scores
+    wrist_twist: Scores
+    neck: Scores
+    trunk: Scores
+    legs: Scores
+    force: Scores
+    arm_with_force: Scores
+    body_with_force: Scores
+    grand: Scores
+
+    def at(self, k: int) -> dict[str, int]:
+        """Return all scores of time ``k`` by name."""
+        return {field.name: int(getattr(self, field.name)[k]) for field in fields(self)}
+
+    @property
+    def worst(self) -> int:
+        """The index of the first time with the highest grand score."""
+        return int(np.argmax(self.grand))
+
+
+def rula(posture: Posture) -> Rula:
+    """Return the scores of ``posture`` at every time."""
+    one = np.ones(len(posture.hand_load), dtype=np.int64)
+    upper_arm = _upper_arm(posture)
+    lower_arm = _lower_arm(posture)
+    wrist = _bands(np.abs(posture.wrist_flexion), (NEUTRAL, 15.0)) + (np.abs(posture.wrist_deviation) > NEUTRAL)
+    twist = _bands(np.abs(posture.pronation), (TWISTED,))
+    trunk = _bands(np.abs(posture.trunk_flexion), (NEUTRAL, 20.0, 60.0))
+    trunk = trunk + (np.abs(posture.trunk_turn) > TURNED) + (np.abs(posture.trunk_bend) > TURNED)
+    load = posture.hand_load
+    force = np.where(load < 2.0, 0, np.where(load <= 10.0, 1, 2))
+    arm = TABLE_A[upper_arm - 1, lower_arm - 1, wrist - 1, twist - 1] + force
+    body = TABLE_B[one - 1, trunk - 1, one - 1] + force
+    grand = TABLE_C[np.minimum(arm, 8) - 1, np.minimum(body, 7) - 1]
+    return Rula(upper_arm, lower_arm, wrist, twist, one, trunk, one, force, arm, body, grand)
+
+
+def _upper_arm(posture: Posture) -> Scores:
+    flexion = posture.upper_arm_flexion
+    score = np.where(flexion < -20.0, 2, _bands(flexion, (20.0, 45.0, 90.0)))
+    return score + (posture.upper_arm_out > ABDUCTED)
+
+
+def _lower_arm(posture: Posture) -> Scores:
+    flexion = posture.elbow_flexion
+    aside = (posture.wrist_left > 0.0) | (posture.wrist_outside > OUT_TO_THE_SIDE)
+    return np.where((flexion >= 60.0) & (flexion <= 100.0), 1, 2) + aside
+
+
+def _bands(values: Array, ends: tuple[float, ...]) -> Scores:
+    """Return 1 up to the first of ``ends``, 2 up to the second, and so on."""
+    return 1 + np.searchsorted(np.array(ends), values, side="left")

@@ -1,0 +1,46 @@
+"""How much of the person's strength each joint uses over the lift."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StrengthUse:
+    """Use of strength of one joint.
+
+    Attributes:
+        joint: name in Table 2.
+        share: (K,) torque as a fraction of the strength in its direction.
+        peak: largest share.
+        peak_at: time of it [s].
+        mean: over the lift.
+    """
+
+    joint: str
+    share: Array
+    peak: float
+    peak_at: float
+    mean: float
+
+
+def strength_use(solution: Solution) -> tuple[StrengthUse, ...]:
+    """Return the use of strength of the person's joints, in the order of Table 2."""
+    human = solution.agents[0]
+    tau = human.tau[:, human.moving]
+    shares = np.where(tau >= 0.0, tau / human.limits.tau_upper, tau / human.limits.tau_lower)
+    names = np.array(human.joint_names)[human.moving]
+    return tuple(_use(str(name).removeprefix("human_"), share, solution.time) for name, share in zip(names, shares.T, strict=True))
+
+
+def _use(joint: str, share: Array, time: Array) -> StrengthUse:
+    at = int(np.argmax(share))
+    mean = float(np.trapezoid(share, time) / (time[-1] - time[0]))
+    return StrengthUse(joint, share, float(share[at]), float(time[at]), mean)

@@ -1,0 +1,60 @@
+"""The motion between the knots: a solution on a finer grid, exactly as the collocation meant it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.scene import agents_of, object_of
+from liftopt.solution import Solution
+from liftopt.trajectory import agent_trajectory, object_trajectory
+
+Array = npt.NDArray[np.float64]
+
+
+def refined(solution: Solution, factor: int) -> Solution:
+    """Return ``solution`` at ``factor`` times as many intervals; the knots stay among the times.
+
+    Accelerations and grasp forces are linear between knots, so that velocities and positions follow exactly; torques
+    and ground reaction are RNEA's on that motion. Objective and verification stay those of the knots.
+    """
+    time = _finer(solution.time, factor)
+    agents, forces = [], []
+    for model, agent in zip(agents_of(solution.scenario), solution.agents, strict=True):
+        q, v, a = motion_between(solution.time, agent.q, agent.v, agent.a, time)
+        force = _linear(solution.time, agent.grasp_force, time)
+        moving = agent.moving
+        agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force))
+        forces.append(force)
+    held = solution.held
+    motion = motion_between(solution.time, held.pose, held.pose_velocity, held.pose_acceleration, time)
+    return replace(
+        solution,
+        time=time,
+        agents=tuple(agents),
+        held=object_trajectory(object_of(solution.scenario), *motion, np.hstack(forces)),
+    )
+
+
+def motion_between(knots: Array, q: Array, v: Array, a: Array, time: Array) -> tuple[Array, Array, Array]:
+    """Return q, v, a (T, n) at ``time`` (T,) from their values (K, n) at ``knots`` (K,), a linear between them."""
+    left = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, len(knots) - 2)
+    s = (time - knots[left])[:, None]
+    jerk = (a[left + 1] - a[left]) / (knots[left + 1] - knots[left])[:, None]
+    return (
+        q[left] + s * (v[left] + s * (a[left] / 2 + s * jerk / 6)),
+        v[left] + s * (a[left] + s * jerk / 2),
+        a[left] + s * jerk,
+    )
+
+
+def _finer(knots: Array, factor: int) -> Array:
+    steps = np.linspace(0.0, 1.0, factor, endpoint=False)
+    inner = (knots[:-1, None] + steps * np.diff(knots)[:, None]).ravel()
+    return np.append(inner, knots[-1])
+
+
+def _linear(knots: Array, values: Array, time: Array) -> Array:
+    return np.stack([np.interp(time, knots, column) for column in values.T], axis=1)

@@ -1,0 +1,1 @@
+"""A solution, seen: playback, plots and report. Imports solutions, never the solver."""

@@ -1,0 +1,108 @@
+"""The joints of Table 2 in an anatomist's words and signs: flexion, abduction, pronation positive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.trajectory import AgentTrajectory
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AnatomicalJoint:
+    """One joint of the right arm or the trunk as anatomy counts it.
+
+    Attributes:
+        joint: name in Table 2, ``"Q7"``.
+        motion: the motion that is positive, ``"elbow flexion"``.
+        opposite: the motion that is negative.
+        sign: anatomical angle (and torque) over that of Table 2, +1 or -1; both are zero in the zero pose (upright, arm
+            hanging, palm forward).
+    """
+
+    joint: str
+    motion: str
+    opposite: str
+    sign: int
+
+    @property
+    def dh(self) -> str:
+        """The joint of Table 2 with its sign, ``"-Q7"``."""
+        return self.joint if self.sign > 0 else f"\N{MINUS SIGN}{self.joint}"
+
+    @property
+    def label(self) -> str:
+        """Both names, ``"Elbow flexion (-Q7)"``."""
+        return f"{self.motion[0].upper()}{self.motion[1:]} ({self.dh})"
+
+
+ANATOMY: tuple[AnatomicalJoint, ...] = (
+    AnatomicalJoint("Q1", "trunk bend to the right", "to the left", +1),
+    AnatomicalJoint("Q2", "trunk flexion", "extension", +1),
+    AnatomicalJoint("Q3", "trunk turn to the left", "to the right", +1),
+    AnatomicalJoint("Q4", "shoulder abduction", "adduction", -1),
+    AnatomicalJoint("Q5", "shoulder flexion", "extension", +1),
+    AnatomicalJoint("Q6", "shoulder internal rotation", "external rotation", +1),
+    AnatomicalJoint("Q7", "elbow flexion", "extension", -1),
+    AnatomicalJoint("Q8", "forearm pronation", "supination", -1),
+    AnatomicalJoint("Q9", "wrist flexion", "extension", -1),
+    AnatomicalJoint("Q10", "wrist ulnar deviation", "radial deviation", +1),
+)
+
+
+@dataclass(frozen=True)
+class JointCurve:
+    """One joint over time in the signs it is shown in.
+
+    Attributes:
+        joint: short name, ``"Q7"``.
+        label: for a reader, DH name included.
+        q: (K,) angle [deg].
+        tau: (K,) torque [Nm], positive in the positive direction of ``q``.
+        q_limits, tau_limits: lower and upper limit of either.
+        share: (K,) torque as a fraction of the limit in its direction.
+    """
+
+    joint: str
+    label: str
+    q: Array
+    tau: Array
+    q_limits: tuple[float, float]
+    tau_limits: tuple[float, float]
+    share: Array
+
+
+def human_curves(human: AgentTrajectory) -> tuple[JointCurve, ...]:
+    """Return Q1 to Q10 of the person in anatomical signs."""
+    return tuple(_curve(human, joint.joint, joint.label, joint.sign) for joint in ANATOMY)
+
+
+def robot_curves(robot: AgentTrajectory, meaning: dict[str, str]) -> tuple[JointCurve, ...]:
+    """Return the moving joints of the robot as in Table 3, with the manufacturer's names from ``meaning``."""
+    names = [name.removeprefix(f"{robot.name}_") for name in np.array(robot.joint_names)[robot.moving]]
+    return tuple(
+        _curve(robot, name, f"{name} ({meaning[name]})".replace("-", "\N{MINUS SIGN}") if name in meaning else name, 1)
+        for name in names
+    )
+
+
+def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCurve:
+    column = agent.joint_names.index(f"{agent.name}_{joint}")
+    row = int(np.count_nonzero(agent.moving[:column]))
+    limits, tau = agent.limits, agent.tau[:, column]
+    share = np.where(tau >= 0.0, tau / limits.tau_upper[row], tau / limits.tau_lower[row])
+    q = np.degrees([limits.q_lower[row], limits.q_upper[row]])
+    lower, upper = float(limits.tau_lower[row]), float(limits.tau_upper[row])
+    return JointCurve(
+        joint=joint,
+        label=label,
+        q=sign * np.degrees(agent.q[:, column]),
+        tau=sign * tau,
+        q_limits=(float(min(sign * q)), float(max(sign * q))),
+        tau_limits=(min(sign * lower, sign * upper), max(sign * lower, sign * upper)),
+        share=share,
+    )

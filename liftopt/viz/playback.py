@@ -1,0 +1,125 @@
+"""A solved lift as a film: where every body is and what every hand pushes with, at a frame rate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+from scipy.interpolate import CubicHermiteSpline
+
+from liftopt.multibody.agent import Agent
+from liftopt.scene import agents_of
+from liftopt.solution import Solution
+from liftopt.trajectory import AgentTrajectory
+
+Array = npt.NDArray[np.float64]
+FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
+
+
+@dataclass(frozen=True)
+class BodyTrack:
+    """The motion of one body.
+
+    Attributes:
+        position: (K, 3) of its frame in the world [m].
+        quaternion: (K, 4) x y z w, without sign flips from frame to frame.
+    """
+
+    position: Array
+    quaternion: Array
+
+
+@dataclass(frozen=True)
+class ForceTrack:
+    """The force of one hand on the object.
+
+    Attributes:
+        point: (K, 3) grasp point in the world [m].
+        force: (K, 3) world axes [N].
+    """
+
+    point: Array
+    force: Array
+
+
+@dataclass(frozen=True)
+class Playback:
+    """A lift at K frames.
+
+    Attributes:
+        time: (K,) [s].
+        bodies: by joint name for what an agent moves, by its own name for the object.
+        forces: by agent.
+        zero: (4, 4) T_world_body of every body while all joints are at zero.
+    """
+
+    time: Array
+    bodies: dict[str, BodyTrack]
+    forces: dict[str, ForceTrack]
+    zero: dict[str, Array]
+
+
+def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
+    """Return the lift at ``frame_rate`` [Hz], the last frame at its very end.
+
+    In between knots it is the spline that was solved: a cubic follows from value and slope at its two ends. Forces are
+    linear between knots, as the optimal-control problem has them.
+    """
+    knots = solution.time
+    time = np.linspace(0.0, knots[-1], max(2, round(float(knots[-1]) * frame_rate) + 1))
+    bodies, forces, zero = {}, {}, {}
+    for agent, track in zip(agents_of(solution.scenario), solution.agents, strict=True):
+        q = CubicHermiteSpline(knots, track.q, track.v)(time)
+        placements = _placements(agent, q)
+        bodies |= {name: _track(list_) for name, list_ in placements.items()}
+        forces[agent.name] = _force(agent, track, knots, time, q)
+        zero |= {name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()}
+    held = solution.held
+    pose = CubicHermiteSpline(knots, held.pose, held.pose_velocity)(time)
+    bodies[held.name] = _track([_object_placement(row) for row in pose])
+    zero[held.name] = np.eye(4)
+    return Playback(time, bodies, forces, zero)
+
+
+def _placements(agent: Agent, q: Array) -> dict[str, list[pin.SE3]]:
+    """Return T_world_joint of every joint at each row of ``q`` (K, n)."""
+    model = agent.model
+    data = model.createData()
+    names = list(model.names)[1:]
+    placements: dict[str, list[pin.SE3]] = {name: [] for name in names}
+    for row in q:
+        pin.forwardKinematics(model, data, row)
+        for j, name in enumerate(names, start=1):
+            placements[name].append(data.oMi[j].copy())
+    return placements
+
+
+def _object_placement(pose: Array) -> pin.SE3:
+    """Return T_world_object from position and roll, pitch, yaw (6,) with R = Rx Ry Rz."""
+    roll, pitch, yaw = (pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", pose[3:], strict=True))
+    return pin.SE3(roll @ pitch @ yaw, pose[:3])
+
+
+def _force(agent: Agent, track: AgentTrajectory, knots: Array, time: Array, q: Array) -> ForceTrack:
+    model = agent.model
+    data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+    points = np.zeros((len(time), 3))
+    for k, row in enumerate(q):
+        pin.forwardKinematics(model, data, row)
+        points[k] = pin.updateFramePlacement(model, data, frame).translation
+    force = np.stack([np.interp(time, knots, track.grasp_force[:, i]) for i in range(3)], axis=1)
+    return ForceTrack(points, force)
+
+
+def _track(placements: list[pin.SE3]) -> BodyTrack:
+    position = np.array([placement.translation for placement in placements])
+    return BodyTrack(position, continuous(np.array([pin.Quaternion(item.rotation).coeffs() for item in placements])))
+
+
+def continuous(quaternions: Array) -> Array:
+    """Return unit ``quaternions`` (K, 4) with signs such that none is far from the one before it."""
+    flips = np.where(np.sum(quaternions[1:] * quaternions[:-1], axis=1) < 0.0, -1.0, 1.0)
+    signs = np.concatenate([[1.0], np.cumprod(flips)])
+    return np.asarray(quaternions * signs[:, None])

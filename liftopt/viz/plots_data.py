@@ -1,0 +1,30 @@
+"""What the plots are drawn from: a solution at its knots and on a finer grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from liftopt.interpolation import refined
+from liftopt.solution import Solution
+
+FACTOR = 10
+
+
+@dataclass(frozen=True)
+class Lift:
+    """A solution and the same one between its knots.
+
+    Attributes:
+        knots: as solved.
+        dense: at ``factor`` times as many intervals.
+        factor: of them.
+    """
+
+    knots: Solution
+    dense: Solution
+    factor: int
+
+    @staticmethod
+    def of(solution: Solution, factor: int = FACTOR) -> Lift:
+        """Return the lift of ``solution``."""
+        return Lift(solution, refined(solution, factor), factor)

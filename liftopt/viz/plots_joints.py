@@ -1,0 +1,137 @@
+"""Angles and torques of joints over the lift: Figs. 13, 14, 16 and 18 of the paper, and those of the other joints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from liftopt.summary import joint_meaning
+from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
+from liftopt.viz.plots_data import Lift
+from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, WIDTH, Array, Line, draw, percent, time_axes
+
+Quantity = Literal["angle", "torque"]
+UNIT = {"angle": "deg", "torque": "Nm"}
+NEAR = 0.6  # a limit is drawn to scale where the curve uses this much of it
+ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
+
+
+def human_arm(lift: Lift) -> Figure:
+    """Return shoulder and elbow flexion: angle and torque (the predicted side of Figs. 13 and 14)."""
+    figure = Figure(figsize=(WIDTH, 5.0), layout="constrained")
+    grid = figure.subplots(2, 2, sharex=True)
+    curves = {curve.joint: curve for curve in human_curves(lift.dense.agents[0])}
+    for row, joint in enumerate(ARM):
+        _panel(grid[row][0], lift, curves[joint], "angle", LINES[0])
+        _panel(grid[row][1], lift, curves[joint], "torque", LINES[1])
+        for axes, quantity in zip(grid[row], ("angle", "torque"), strict=True):
+            axes.set_title(f"{curves[joint].label}: {quantity}")
+            axes.set_ylabel(f"{quantity} [{UNIT[quantity]}], flexion +")
+    time_axes(figure, [list(line) for line in grid], float(lift.dense.time[-1]))
+    return figure
+
+
+def human_angles(lift: Lift) -> Figure:
+    """Return all joint angles of the person with their ranges of motion."""
+    return _grid(lift, human_curves(lift.dense.agents[0]), "angle")
+
+
+def human_torques(lift: Lift) -> Figure:
+    """Return all joint torques of the person with their strength."""
+    return _grid(lift, human_curves(lift.dense.agents[0]), "torque")
+
+
+def robot_angles(lift: Lift) -> Figure:
+    """Return all joint angles of the robot with their limits (the predicted side of Fig. 16)."""
+    return _grid(lift, _robot(lift), "angle")
+
+
+def robot_torques(lift: Lift) -> Figure:
+    """Return all joint torques of the robot with their limits (the predicted side of Figs. 17 and 18)."""
+    return _grid(lift, _robot(lift), "torque")
+
+
+def _robot(lift: Lift) -> tuple[JointCurve, ...]:
+    model = lift.dense.scenario.robot.model
+    names = {f"Q{i}": joint_meaning("robot", model, f"Q{i}") for i in range(1, 8)}
+    return robot_curves(lift.dense.agents[1], {joint: meaning for joint, meaning in names.items() if meaning})
+
+
+def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figure:
+    """Return one small panel a joint, two beside each other."""
+    columns = 2
+    rows = -(-len(curves) // columns)
+    figure = Figure(figsize=(WIDTH, 1.45 * rows + 0.6), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, squeeze=False)
+    panels = [list(line) for line in grid]
+    for index, curve in enumerate(curves):
+        axes = grid[index // columns][index % columns]
+        _panel(axes, lift, curve, quantity, LINES[0] if quantity == "angle" else LINES[1])
+        axes.set_title(curve.label)
+        axes.set_ylabel(f"{quantity} [{UNIT[quantity]}]")
+    if len(curves) % columns:
+        _explain(panels[-1].pop())
+        grid[-2][-1].tick_params(labelbottom=True)
+    time_axes(figure, panels, float(lift.dense.time[-1]))
+    return figure
+
+
+def _explain(axes: Axes) -> None:
+    """Use a panel left over for the key."""
+    axes.axis("off")
+    axes.plot([], [], color=INK, marker="o", markerfacecolor="white", label="predicted; a mark at every other knot")
+    axes.plot([], [], color=VERMILION, linestyle=(0, (6, 2)), linewidth=1.0, label="limit, and what lies beyond it")
+    axes.plot([], [], color=VERMILION, linewidth=4.0, alpha=0.6, label="at the limit")
+    axes.legend(loc="center left", fontsize=7.5)
+
+
+def _panel(axes: Axes, lift: Lift, curve: JointCurve, quantity: Quantity, line: Line) -> None:
+    values = curve.q if quantity == "angle" else curve.tau
+    limits = curve.q_limits if quantity == "angle" else curve.tau_limits
+    draw(axes, lift.dense.time, values, line, knots=lift.factor)
+    _scale(axes, values, limits, quantity)
+    _mark_limits(axes, lift.dense.time, values, limits)
+    used = f", {100 * curve.share.max():.0f} % used" if quantity == "torque" else ""
+    axes.annotate(
+        f"limits {_signed(limits[0])} to {_signed(limits[1])} {UNIT[quantity]}{used}",
+        (1.0, 0.03), xycoords="axes fraction", ha="right", va="bottom", fontsize=6.8, color=LIMIT,
+        bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+    )  # fmt: skip
+
+
+def _scale(axes: Axes, values: Array, limits: tuple[float, float], quantity: Quantity) -> None:
+    """Fit the axis to the curve; take in a limit that the curve comes near."""
+    low, high = float(values.min()), float(values.max())
+    span = max(high - low, 10.0 if quantity == "angle" else 0.05 * (limits[1] - limits[0]))
+    if quantity == "angle":
+        near = 0.2 * (limits[1] - limits[0])
+        bottom = limits[0] if low - limits[0] < near else low
+        top = limits[1] if limits[1] - high < near else high
+    else:
+        low, high = min(low, 0.0), max(high, 0.0)
+        bottom = limits[0] if low < NEAR * limits[0] else low
+        top = limits[1] if high > NEAR * limits[1] else high
+        axes.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
+    middle, half = (bottom + top) / 2, max(top - bottom, span) / 2
+    axes.set_ylim(middle - 1.35 * half, middle + 1.15 * half)
+
+
+def _mark_limits(axes: Axes, time: Array, values: Array, limits: tuple[float, float]) -> None:
+    bottom, top = axes.get_ylim()
+    for limit, beyond in ((limits[0], bottom), (limits[1], top)):
+        if bottom < limit < top:
+            axes.axhline(limit, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)), zorder=1)
+            axes.axhspan(limit, beyond, facecolor="white", edgecolor=FAINT, hatch="////", linewidth=0, zorder=1)
+        at = np.abs(values - limit) <= 1e-3 * (limits[1] - limits[0])
+        axes.plot(percent(time), np.where(at, limit, np.nan), color=VERMILION, linewidth=5.0, alpha=0.6)
+    axes.set_ylim(bottom, top)
+
+
+def _signed(value: float) -> str:
+    return f"{value + 0.0:.3g}".replace("-", "\N{MINUS SIGN}")  # no negative zero
+
+

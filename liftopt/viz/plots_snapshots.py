@@ -1,0 +1,126 @@
+"""Snapshots of the lift from the person's right side (Fig. 11): the models' own shapes in outline, forces as arrows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, Polygon
+from scipy.spatial import ConvexHull
+
+from liftopt.scene import agents_of, object_of
+from liftopt.viz.plots_data import Lift
+from liftopt.viz.plots_style import BLUE, INK, VERMILION, Array
+
+MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
+CIRCLE = 40  # points of a drawn circle
+METRES_A_NEWTON = 0.01  # length of a force arrow
+ARROWS = ((BLUE, "-|>"), (VERMILION, "->"))  # color and head, by agent
+HEADROOM = 0.15  # [m]
+
+
+@dataclass(frozen=True)
+class Outline:
+    """One convex part as seen from the side.
+
+    Attributes:
+        polygon: (n, 2) X and Z [m].
+        depth: Y of its middle, larger is farther away [m].
+        color: red, green, blue.
+    """
+
+    polygon: Array
+    depth: float
+    color: tuple[float, float, float]
+
+
+def snapshots(lift: Lift) -> Figure:
+    """Return the lift at five moments, side by side."""
+    solution = lift.dense
+    figure = Figure(figsize=(12.0, 3.0), layout="constrained")
+    panels = figure.subplots(1, len(MOMENTS), sharex=True, sharey=True)
+    path = solution.held.grasp_position[:, 0]
+    bodies = _bodies(lift)
+    for axes, moment in zip(panels, MOMENTS, strict=True):
+        k = round(moment * (len(solution.time) - 1))
+        outlines = [outline for model, visual, q in bodies for outline in _outlines(model, visual, q[k])]
+        for part in sorted(outlines, key=lambda part: -part.depth):
+            axes.add_patch(Polygon(part.polygon, facecolor=part.color, edgecolor=INK, linewidth=0.35))
+        axes.plot(path[: k + 1, 0], path[: k + 1, 2], color=INK, linewidth=1.0, linestyle=(0, (1, 1)), zorder=3)
+        for agent, (color, head) in zip(solution.agents, ARROWS, strict=True):
+            _arrow(axes, agent.grasp_position[k], agent.grasp_force[k], color, head)
+        axes.axhline(0.0, color=INK, linewidth=1.0)
+        axes.set_title(f"{100 * moment:.0f} %   {solution.time[k]:.2f} s", loc="center")
+        axes.grid(False)
+        axes.set_aspect("equal")
+        axes.spines[["left", "bottom"]].set_visible(False)
+        axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
+    reach = float(solution.agents[1].grasp_position[:, 0].max())
+    panels[0].set_xlim(-0.35, max(reach, solution.scenario.task.standing_distance) + 0.4)
+    panels[0].set_ylim(-0.16, max(solution.scenario.human.stature, 1.7) + HEADROOM)
+    _key(figure, panels[0], solution.held.name)
+    return figure
+
+
+def _key(figure: Figure, axes: Axes, held: str) -> None:
+    """Say how long an arrow is, below the first panel, and what the arrows and the dotted line are."""
+    left, length = axes.get_xlim()[0] + 0.05, 20 * METRES_A_NEWTON
+    axes.plot([left, left + length], [-0.1, -0.1], color=INK, linewidth=1.2, marker="|", markersize=6)
+    axes.text(left + length + 0.05, -0.1, "20 N", va="center", fontsize=8, color=INK)
+    figure.supxlabel(
+        f"Seen from the person's right. Arrows: force on the {held} by the person (blue, filled head) and by the robot "
+        "(red, open head). Dotted: path of the hand.",
+        fontsize=8.5, color=INK,
+    )  # fmt: skip
+
+
+def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
+    """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
+    solution = lift.dense
+    models = [*agents_of(solution.scenario), object_of(solution.scenario)]
+    held = np.hstack([solution.held.pose[:, :3], solution.held.quaternion])
+    motions = [*(agent.q for agent in solution.agents), held]
+    return [
+        (model.model, pin.buildGeomFromUrdfString(model.model, model.urdf, pin.GeometryType.VISUAL), q)
+        for model, q in zip(models, motions, strict=True)
+    ]
+
+
+def _outlines(model: pin.Model, visual: pin.GeometryModel, q: Array) -> Iterator[Outline]:
+    data, placements = model.createData(), visual.createData()
+    pin.updateGeometryPlacements(model, data, visual, placements, q)
+    for shape, placement in zip(visual.geometryObjects, placements.oMg, strict=True):
+        points = _surface(shape.geometry) @ placement.rotation.T + placement.translation
+        side = points[:, [0, 2]]
+        red, green, blue, _ = shape.meshColor
+        yield Outline(side[ConvexHull(side).vertices], float(points[:, 1].mean()), (red, green, blue))
+
+
+def _surface(geometry: object) -> Array:
+    """Return points (n, 3) whose convex hull is the shape, in its own frame."""
+    half = getattr(geometry, "halfSide", None)
+    if half is not None:
+        corners = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3), axis=-1).reshape(-1, 3)
+        return np.asarray(corners * half)
+    radius = float(getattr(geometry, "radius"))  # noqa: B009  the base class has none
+    length = getattr(geometry, "halfLength", None)
+    angle = np.linspace(0.0, 2 * np.pi, CIRCLE, endpoint=False)
+    ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(CIRCLE)], axis=1) * radius
+    if length is not None:
+        return np.concatenate([ring - [0.0, 0.0, length], ring + [0.0, 0.0, length]])
+    latitudes = np.linspace(-np.pi / 2, np.pi / 2, 2 * (CIRCLE // 4) + 1)
+    return np.concatenate([ring * np.cos(t) + [0.0, 0.0, radius * np.sin(t)] for t in latitudes])
+
+
+def _arrow(axes: Axes, point: Array, force: Array, color: str, head: str) -> None:
+    tip = point + METRES_A_NEWTON * force
+    axes.add_patch(
+        FancyArrowPatch(
+            (point[0], point[2]), (tip[0], tip[2]), arrowstyle=head, mutation_scale=9, color=color, linewidth=2.0,
+            shrinkA=0, shrinkB=0, zorder=5,
+        )  # fmt: skip
+    )

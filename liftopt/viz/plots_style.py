@@ -1,0 +1,99 @@
+"""How plots look: colours that colour-blind readers tell apart, line styles that survive a grey print, time axes."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+Array = npt.NDArray[np.float64]
+
+# Okabe & Ito (2008), "Color Universal Design": distinguishable with any common colour vision.
+BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9"
+INK, FAINT, LIMIT = "#222222", "#9a9a9a", "#666666"
+
+WIDTH = 7.2  # of a full-width figure [in]
+KNOT_EVERY = 10  # points of a refined solution between two markers
+
+STYLE: dict[str, Any] = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib
+    "font.size": 8.5,
+    "axes.titlesize": 9,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 8.5,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.unicode_minus": True,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.6,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.6,
+    "lines.markersize": 4.0,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "liftopt",
+    "pdf.fonttype": 42,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+}
+
+
+class Line(NamedTuple):
+    """How one series is drawn: no two share colour, dashes and marker."""
+
+    color: str
+    linestyle: Any
+    marker: str
+
+
+LINES = (
+    Line(BLUE, "-", "o"),
+    Line(VERMILION, (0, (5, 1.5)), "s"),
+    Line(GREEN, (0, (4, 1.3, 1, 1.3)), "^"),
+    Line(PURPLE, (0, (1.2, 1.2)), "D"),
+)
+
+
+def draw(axes: Axes, time: Array, values: Array, line: Line, label: str | None = None, knots: int = KNOT_EVERY) -> None:
+    """Draw values (K,) at ``time`` (K,) [s] over percent of the lift, with a marker at every other knot."""
+    axes.plot(
+        percent(time), values, color=line.color, linestyle=line.linestyle, marker=line.marker, label=label,
+        markevery=2 * knots, markerfacecolor="white", markeredgewidth=1.1,
+    )  # fmt: skip
+
+
+def percent(time: Array) -> Array:
+    """Return ``time`` as percent of the lift."""
+    share: Array = 100.0 * time / time[-1]
+    return share
+
+
+def time_axes(figure: Figure, panels: list[list[Axes]], duration: float) -> None:
+    """Give a grid of panels percent of the lift below and seconds above; label the outer ones only."""
+    for row, line in enumerate(panels):
+        for axes in line:
+            axes.set_xlim(0.0, 100.0)
+            axes.set_xticks([0, 25, 50, 75, 100])
+            above = axes.secondary_xaxis("top", functions=(lambda p: p * duration / 100, lambda s: 100 * s / duration))
+            above.set_xticks([duration * part / 4 for part in range(5)])
+            above.tick_params(labelsize=7, colors=LIMIT, length=2)
+            above.xaxis.set_major_formatter(lambda value, _: f"{value:.3g}")
+            above.spines["top"].set_color(FAINT)
+            if row == 0:
+                above.set_xlabel("time [s]", fontsize=7.5, color=LIMIT)
+            else:
+                above.set_xticklabels([])
+    for axes in panels[-1]:
+        axes.set_xlabel("lift completed [%]")
+    figure.align_ylabels([line[0] for line in panels])

@@ -1,0 +1,31 @@
+"""A part of the scene: one mesh of one colour on one moving body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from liftopt.viz.scene_mesh import Mesh
+
+Colour = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is drawn of one body.
+
+    Attributes:
+        body: the joint that moves it (``"human_Q8"``), or ``"ground"`` for what stands still.
+        name: of the part, unique on its body.
+        colour: red, green, blue in [0, 1].
+        mesh: in the world while every joint is at zero.
+        shininess: of the surface, three.js' Phong exponent.
+    """
+
+    body: str
+    name: str
+    colour: Colour
+    mesh: Mesh
+    shininess: float = 20.0
+
+
+GROUND = "ground"

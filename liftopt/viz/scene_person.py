@@ -1,0 +1,177 @@
+"""The person as a figure: smooth limbs, trunk and head through the subject's own breadths, depths and girths."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from liftopt.multibody.anthropometry import (
+    HEEL_BEHIND_ANKLE,
+    HIP_JOINT_SPREAD,
+    dimension,
+    girth_radius,
+    landmarks,
+    link_lengths,
+)
+from liftopt.multibody.subject import Subject
+from liftopt.viz.scene_head import head_parts
+from liftopt.viz.scene_mesh import Mesh, Ring, capsule, merged, tube
+from liftopt.viz.scene_part import Colour, Part
+
+SKIN: Colour = (0.86, 0.66, 0.53)
+SHIRT: Colour = (0.16, 0.40, 0.66)
+TROUSERS: Colour = (0.22, 0.25, 0.32)
+SHOES: Colour = (0.10, 0.10, 0.12)
+SOLES: Colour = (0.80, 0.80, 0.80)
+LEFT, RIGHT = 1.0, -1.0
+TO_SIDE = (0.0, 1.0, 0.0)
+# Stands in for the clothes, and for girths that ANSUR II measures at their largest [fractions of a radius].
+SLACK = 1.06
+
+
+def person_parts(subject: Subject) -> list[Part]:
+    """Return the subject upright at the zero pose: feet at the origin, facing +X, arms hanging, palms forward.
+
+    Legs and pelvis are on ``human_GT3``, the trunk with head and resting left arm on ``human_Q3``, the right arm on
+    ``human_Q6`` (upper arm), ``human_Q8`` (forearm) and ``human_Q10`` (hand).
+    """
+    right = _arm(subject, RIGHT)
+    left = _arm(subject, LEFT)
+    parts = [
+        *_legs(subject),
+        Part("human_Q3", "trunk", SHIRT, _trunk(subject), 8.0),
+        *head_parts(subject, "human_Q3", SKIN),
+    ]
+    for arm, bodies, side in ((left, ("human_Q3",) * 3, "left"), (right, ("human_Q6", "human_Q8", "human_Q10"), "right")):
+        sleeve, upper, forearm, hand = arm
+        parts += [
+            Part(bodies[0], f"{side}_sleeve", SHIRT, sleeve, 8.0),
+            Part(bodies[0], f"{side}_upper_arm", SKIN, upper),
+            Part(bodies[1], f"{side}_forearm", SKIN, forearm),
+            Part(bodies[2], f"{side}_hand", SKIN, hand),
+        ]
+    return parts
+
+
+def _legs(subject: Subject) -> list[Part]:
+    at, parts = landmarks(subject), []
+    breadth, depth = dimension(subject, "hipbreadth"), dimension(subject, "buttockdepth")
+    crotch = at.hip - 0.05 * subject.stature
+    hips = [
+        Ring((0.0, 0.0, crotch), 0.36 * breadth, 0.30 * depth, 2.4),
+        Ring((-0.01, 0.0, at.hip), 0.50 * breadth, 0.50 * depth, 2.4),
+        Ring((-0.005, 0.0, 0.45 * at.hip + 0.55 * at.omphalion), 0.47 * breadth, 0.46 * depth, 2.4),
+        Ring((0.0, 0.0, at.omphalion + 0.015), 0.44 * breadth, 0.42 * depth, 2.4),
+    ]
+    parts.append(Part("human_GT3", "pelvis", TROUSERS, tube(hips, TO_SIDE, round_start=0.03, round_end=0.02), 5.0))
+    thigh, calf, ankle = (
+        girth_radius(subject, f"{name}circumference") for name in ("thigh", "calf", "ankle")
+    )
+    knee = 0.5 * (0.62 * thigh + calf)
+    for side, name in ((LEFT, "left"), (RIGHT, "right")):
+        y = side * HIP_JOINT_SPREAD * breadth
+        leg = [
+            Ring((0.0, y, at.hip), 0.90 * thigh, 0.98 * thigh),
+            Ring((0.01, y, 0.75 * at.hip + 0.25 * at.knee), 0.92 * thigh, thigh),
+            Ring((0.01, y, 0.3 * at.hip + 0.7 * at.knee), 0.74 * thigh, 0.8 * thigh),
+            Ring((0.005, y, at.knee), 1.1 * knee, 1.12 * knee),
+            Ring((-0.012, y, 0.72 * at.knee + 0.28 * at.ankle), SLACK * calf, 1.1 * calf),
+            Ring((-0.008, y, 0.4 * at.knee + 0.6 * at.ankle), 0.92 * calf, calf),
+            Ring((0.0, y, at.ankle + 0.03), 1.5 * ankle, 1.7 * ankle),
+            Ring((0.0, y, at.ankle - 0.01), 1.5 * ankle, 1.75 * ankle),
+        ]
+        parts.append(Part("human_GT3", f"{name}_leg", TROUSERS, tube(leg, TO_SIDE, round_start=0.05), 5.0))
+        upper, sole = _shoe(subject, y)
+        parts.append(Part("human_GT3", f"{name}_shoe", SHOES, upper, 30.0))
+        parts.append(Part("human_GT3", f"{name}_sole", SOLES, sole))
+    return parts
+
+
+def _shoe(subject: Subject, y: float) -> tuple[Mesh, Mesh]:
+    length, breadth = dimension(subject, "footlength") * SLACK, dimension(subject, "footbreadthhorizontal") / 2.0
+    heel, ankle, sole = -HEEL_BEHIND_ANKLE * length, landmarks(subject).ankle, 0.018
+
+    def ring(share: float, wide: float, height: float) -> Ring:
+        return Ring((heel + share * length, y, sole + height / 2.0), wide * breadth, height / 2.0, 2.6)
+
+    upper = [ring(0.03, 0.55, 0.6 * ankle), ring(0.15, 0.72, 1.05 * ankle), ring(0.30, 0.74, 1.12 * ankle)]
+    upper += [ring(0.50, 0.86, 0.85 * ankle), ring(0.72, 1.0, 0.58 * ankle), ring(0.95, 0.72, 0.42 * ankle)]
+    outline = [(0.0, 0.5), (0.06, 0.72), (0.3, 0.72), (0.5, 0.84), (0.74, 1.04), (0.92, 0.84), (1.0, 0.45)]
+    flat = [Ring((heel + s * length, y, sole / 2.0), w * breadth, sole / 2.0, 6.0) for s, w in outline]
+    return (
+        tube(upper, TO_SIDE, round_start=0.01, round_end=0.015),
+        tube(flat, TO_SIDE, round_start=0.004, round_end=0.006),
+    )
+
+
+def _trunk(subject: Subject) -> Mesh:
+    at, lengths = landmarks(subject), link_lengths(subject)
+    shoulder = lengths.l1 + lengths.l2
+    waist = dimension(subject, "waistbreadth") / 2.0, dimension(subject, "waistdepth") / 2.0
+    chest = dimension(subject, "chestbreadth") / 2.0, dimension(subject, "chestdepth") / 2.0
+    neck = girth_radius(subject, "neckcircumference")
+    hips = 0.46 * dimension(subject, "hipbreadth"), 0.44 * dimension(subject, "buttockdepth")
+    rise = at.suprasternale - shoulder + 0.055
+    rings = [
+        Ring((0.0, 0.0, at.omphalion - 0.045), hips[0], hips[1], 2.4),
+        Ring((0.0, 0.0, at.omphalion + 0.02), 0.98 * waist[0], 0.96 * waist[1], 2.4),
+        Ring((0.0, 0.0, 0.5 * (at.omphalion + at.xiphion)), waist[0], 0.96 * waist[1], 2.4),
+        Ring((0.0, 0.0, at.xiphion), 1.02 * chest[0], 0.97 * chest[1], 2.5),
+        Ring((-0.005, 0.0, 0.45 * at.xiphion + 0.55 * shoulder), 1.12 * chest[0], chest[1], 2.5),
+        Ring((-0.015, 0.0, shoulder - 0.01), lengths.l3, 0.72 * chest[1], 2.6),
+        Ring((-0.02, 0.0, shoulder + 0.4 * rise), 0.84 * lengths.l3, 0.55 * chest[1], 2.4),
+        Ring((-0.02, 0.0, shoulder + 0.8 * rise), 0.50 * lengths.l3, 0.42 * chest[1], 2.2),
+        Ring((-0.015, 0.0, shoulder + 1.15 * rise), 1.12 * neck, 1.15 * neck, 2.0),
+    ]
+    return tube(rings, TO_SIDE, round_start=0.015)
+
+
+def _arm(subject: Subject, side: float) -> tuple[Mesh, Mesh, Mesh, Mesh]:
+    """Return sleeve, upper arm, forearm and hand of a hanging arm, the palm forward."""
+    lengths = link_lengths(subject)
+    y, shoulder = side * lengths.l3, lengths.l1 + lengths.l2
+    elbow, wrist = shoulder - lengths.l4, shoulder - lengths.l4 - lengths.l5
+    biceps, forearm = (0.92 * girth_radius(subject, f"{p}circumferenceflexed") for p in ("biceps", "forearm"))
+    thin = girth_radius(subject, "wristcircumference")
+
+    def ring(height: float, radius: float, ahead: float = 0.0) -> Ring:
+        return Ring((ahead, y, height), radius, radius)
+
+    half = 0.5 * (shoulder + elbow)
+    sleeve = [ring(shoulder + 0.012, 1.12 * biceps), ring(shoulder - 0.05, 1.2 * biceps)]
+    sleeve += [ring(half, 1.1 * biceps), ring(half - 0.02, 1.1 * biceps)]
+    upper = [ring(half + 0.03, 0.96 * biceps), ring(half - 0.03, 0.98 * biceps), ring(elbow, 0.86 * forearm)]
+    lower = [ring(elbow, 0.88 * forearm), ring(elbow - 0.25 * lengths.l5, forearm)]
+    lower += [ring(elbow - 0.6 * lengths.l5, 0.8 * forearm), ring(wrist + 0.02, 1.08 * thin), ring(wrist, 1.02 * thin)]
+    return (
+        tube(sleeve, TO_SIDE, round_start=1.0 * biceps),
+        tube(upper, TO_SIDE, round_end=0.8 * forearm),
+        tube(lower, TO_SIDE, round_start=0.8 * forearm, round_end=0.015),
+        _hand(subject, side, y, wrist),
+    )
+
+
+def _hand(subject: Subject, side: float, y: float, wrist: float) -> Mesh:
+    """Return palm, four bent fingers and a thumb; the palm faces +X, the thumb points away from the body."""
+    knuckles, breadth = link_lengths(subject).l6, dimension(subject, "handbreadth") / 2.0
+    thin = girth_radius(subject, "wristcircumference")
+    palm = [
+        Ring((0.0, y, wrist + 0.01), 0.98 * thin, 0.80 * thin),
+        Ring((0.0, y, wrist - 0.35 * knuckles), 0.86 * breadth, 0.017, 2.6),
+        Ring((0.002, y, wrist - knuckles), breadth, 0.014, 2.8),
+    ]
+    meshes = [tube(palm, TO_SIDE, round_start=0.01, round_end=0.012)]
+    for i, share in enumerate((0.93, 1.0, 0.95, 0.78)):  # index to little finger
+        offset = y + side * (0.75 - 0.5 * i) * breadth
+        bones = np.array([0.50, 0.30, 0.24]) * knuckles * share
+        point, bend = np.array([0.002, offset, wrist - knuckles]), 0.0
+        for bone, turn in zip(bones, (0.35, 0.55, 0.45), strict=True):
+            bend += turn
+            tip = point + bone * np.array([np.sin(bend), 0.0, -np.cos(bend)])
+            meshes.append(capsule(point, tip, 0.0085, 0.0075))
+            point = tip
+    root = np.array([0.006, y + side * 0.75 * breadth, wrist - 0.30 * knuckles])
+    middle = root + 0.42 * knuckles * np.array([0.35, side * 0.62, -0.70])
+    meshes.append(capsule(root, middle, 0.0125, 0.0105))
+    meshes.append(capsule(middle, middle + 0.34 * knuckles * np.array([0.40, side * 0.22, -0.88]), 0.0105, 0.008))
+    return merged(meshes)
+
