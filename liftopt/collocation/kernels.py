@@ -8,6 +8,7 @@ damaged or somebody else's is never loaded. Without a compiler, CasADi's virtual
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import os
 import platform
@@ -38,7 +39,7 @@ class Kernel:
 
     Attributes:
         value, gradient, jacobian, curvature, squares: as there.
-        compiled: False where CasADi's virtual machine evaluates them.
+        library: the loaded library that holds them; None where CasADi's virtual machine evaluates them.
     """
 
     value: Any
@@ -46,7 +47,17 @@ class Kernel:
     jacobian: Any
     curvature: Any
     squares: Any
-    compiled: bool
+    library: ctypes.CDLL | None
+
+    @property
+    def compiled(self) -> bool:
+        """Whether the functions are machine code."""
+        return self.library is not None
+
+    def address(self, role: str) -> int:
+        """Return where a function of a compiled kernel is in memory; it has CasADi's calling convention for C."""
+        function = getattr(self.library, getattr(self, role).name())
+        return int(ctypes.cast(function, ctypes.c_void_p).value or 0)
 
     @property
     def n_y(self) -> int:
@@ -129,7 +140,7 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
     compiler = find_compiler()
     say("building the equations of motion")
     functions = {key: builder(topology) for key, (builder, topology) in missing.items()}
-    interpreted = {key: _kernel([getattr(f, role) for role in ROLES], compiled=False) for key, f in functions.items()}
+    interpreted = {key: _kernel([getattr(f, role) for role in ROLES], None) for key, f in functions.items()}
     if compiler is None:
         say("no C compiler found: CasADi's virtual machine evaluates the dynamics, several times slower")
         return interpreted
@@ -209,11 +220,12 @@ def _load(path: Path, key: str) -> Kernel | None:
         if not _is_ours(path) or hashlib.sha256(content[:-DIGEST_BYTES]).digest() != content[-DIGEST_BYTES:]:
             return None
         roles = [ca.external(_symbol(role, key), str(path)) for role in ROLES]
+        library = ctypes.CDLL(str(path))
     except (OSError, RuntimeError):
         return None
-    return _kernel(roles, compiled=True)
+    return _kernel(roles, library)
 
 
-def _kernel(functions: Sequence[Any], compiled: bool) -> Kernel:
+def _kernel(functions: Sequence[Any], library: ctypes.CDLL | None) -> Kernel:
     value, gradient, jacobian, curvature, squares = functions
-    return Kernel(value, gradient, jacobian, curvature, squares, compiled)
+    return Kernel(value, gradient, jacobian, curvature, squares, library)

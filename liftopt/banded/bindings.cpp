@@ -1,0 +1,163 @@
+// The Python module _liftopt_banded.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <memory>
+#include <tuple>
+
+#include "callback_nlp.hpp"
+#include "dense.hpp"
+#include "interior_point.hpp"
+#include "kernel_nlp.hpp"
+
+namespace py = pybind11;
+
+namespace {
+
+using banded::Sparse;
+using banded::Vector;
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
+// (rows, columns, first entry of each row, column of each entry, values)
+using SparseArrays = std::tuple<int, int, Integers, Integers, Doubles>;
+
+Vector vector_of(const Doubles& array) { return Vector(array.data(), array.data() + array.size()); }
+
+std::vector<int> integers_of(const Integers& array) { return {array.data(), array.data() + array.size()}; }
+
+Sparse sparse_of(const SparseArrays& arrays) {
+  const auto& [rows, columns, start, index, value] = arrays;
+  Sparse matrix{rows, columns, integers_of(start), integers_of(index), vector_of(value)};
+  const bool whole = matrix.start.size() == static_cast<std::size_t>(rows) + 1 && matrix.start[0] == 0 &&
+                     matrix.start[rows] == matrix.nonzeros() && matrix.value.size() == matrix.index.size();
+  if (!whole) throw std::invalid_argument("not a matrix in compressed rows");
+  for (int r = 0; r < rows; ++r)
+    if (matrix.start[r] > matrix.start[r + 1]) throw std::invalid_argument("rows must not overlap");
+  for (int c : matrix.index)
+    if (c < 0 || c >= columns) throw std::invalid_argument("a column is out of range");
+  return matrix;
+}
+
+banded::KernelCall kernel_of(const py::handle& call) {
+  const auto [address, n_arg, n_res, n_iw, n_w] = call.cast<std::tuple<std::uintptr_t, int, int, int, int>>();
+  return {reinterpret_cast<banded::Kernel>(address), n_arg, n_res, n_iw, n_w};
+}
+
+banded::KernelPart part_of(const py::dict& given) {
+  banded::KernelPart part;
+  part.value = kernel_of(given["value"]);
+  part.jacobian = kernel_of(given["jacobian"]);
+  part.curvature = kernel_of(given["curvature"]);
+  part.n_y = given["n_y"].cast<int>();
+  part.n_c = given["n_c"].cast<int>();
+  part.jacobian_nonzeros = given["jacobian_nonzeros"].cast<int>();
+  part.curvature_nonzeros = given["curvature_nonzeros"].cast<int>();
+  part.select = sparse_of(given["select"].cast<SparseArrays>());
+  part.squared_rows = integers_of(given["squared_rows"].cast<Integers>());
+  part.squared_factors = vector_of(given["squared_factors"].cast<Doubles>());
+  return part;
+}
+
+std::unique_ptr<banded::KernelNlp> kernel_nlp(const std::vector<py::dict>& parts, const Doubles& weights,
+                                              const SparseArrays& combine, const SparseArrays& linear,
+                                              const SparseArrays& jacobian, const SparseArrays& jacobian_scatter,
+                                              const Doubles& jacobian_offset, const SparseArrays& hessian,
+                                              const SparseArrays& hessian_scatter, const Doubles& hessian_offset) {
+  std::vector<banded::KernelPart> all;
+  for (const py::dict& part : parts) all.push_back(part_of(part));
+  return std::make_unique<banded::KernelNlp>(
+      std::move(all), vector_of(weights), sparse_of(combine), sparse_of(linear), sparse_of(jacobian),
+      banded::Scatter{sparse_of(jacobian_scatter), vector_of(jacobian_offset)}, sparse_of(hessian),
+      banded::Scatter{sparse_of(hessian_scatter), vector_of(hessian_offset)});
+}
+
+const char* name_of(banded::Status status) {
+  switch (status) {
+    case banded::Status::solved: return "Solve_Succeeded";
+    case banded::Status::iterations: return "Maximum_Iterations_Exceeded";
+    case banded::Status::time: return "User_Requested_Stop";
+    case banded::Status::line_search: return "Line_Search_Failed";
+    case banded::Status::infeasible: return "Infeasible_Problem_Detected";
+    default: return "Invalid_Number_Detected";
+  }
+}
+
+py::dict solve(banded::InteriorPoint& solver, const banded::Nlp& nlp, const Doubles& lower_x, const Doubles& upper_x,
+               const Doubles& lower_g, const Doubles& upper_g, const Doubles& x0,
+               const std::optional<std::tuple<Doubles, Doubles>>& warm, const banded::Options& options) {
+  const auto check = [](const Doubles& array, int size) {
+    if (array.size() != size) throw std::length_error("an array does not have the problem's size");
+    return array.data();
+  };
+  const int n = nlp.unknowns(), m = nlp.rows();
+  const double* warm_x = warm ? check(std::get<0>(*warm), n) : nullptr;
+  const double* warm_g = warm ? check(std::get<1>(*warm), m) : nullptr;
+  const double *lx = check(lower_x, n), *ux = check(upper_x, n), *lg = check(lower_g, m), *ug = check(upper_g, m);
+  const double* start = check(x0, n);
+  banded::Result result;
+  {
+    py::gil_scoped_release free;
+    result = solver.solve(lx, ux, lg, ug, start, warm_x, warm_g, options);
+  }
+  const auto array = [](const Vector& v) { return Doubles(static_cast<py::ssize_t>(v.size()), v.data()); };
+  using namespace py::literals;
+  return py::dict("status"_a = name_of(result.status), "x"_a = array(result.x),
+                  "bound_multipliers"_a = array(result.bound_multipliers),
+                  "multipliers"_a = array(result.multipliers), "objective"_a = result.objective,
+                  "error"_a = result.error, "iterations"_a = result.iterations,
+                  "factorisations"_a = result.factorisations, "refinements"_a = result.refinements,
+                  "evaluations"_a = result.evaluations, "seconds"_a = result.seconds,
+                  "evaluation_seconds"_a = result.evaluation_seconds,
+                  "assembly_seconds"_a = result.assembly_seconds,
+                  "factorisation_seconds"_a = result.factorisation_seconds);
+}
+
+// Keeps the problem that its solver refers to.
+struct Solver {
+  Solver(std::shared_ptr<banded::Nlp> problem, std::vector<std::vector<int>> blocks)
+      : nlp(std::move(problem)), point(*nlp, std::move(blocks)) {}
+  std::shared_ptr<banded::Nlp> nlp;
+  banded::InteriorPoint point;
+};
+
+}  // namespace
+
+PYBIND11_MODULE(_liftopt_banded, module) {
+  module.doc() = "An interior point for problems whose condensed Newton matrix is block banded.";
+  module.def("instructions", [] { return banded::dense_operations().name; }, "Instruction set that is used.");
+  py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp");
+  py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
+      .def(py::init(&kernel_nlp), py::kw_only(), py::arg("parts"), py::arg("weights"), py::arg("combine"),
+           py::arg("linear"), py::arg("jacobian"), py::arg("jacobian_scatter"), py::arg("jacobian_offset"),
+           py::arg("hessian"), py::arg("hessian_scatter"), py::arg("hessian_offset"))
+      .def("set_parameters", [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,
+                                const Doubles& y_weight) {
+        nlp.set_parameters(part, vector_of(parameters), vector_of(c_weight), vector_of(y_weight));
+      });
+  py::class_<banded::CallbackNlp, banded::Nlp, std::shared_ptr<banded::CallbackNlp>>(module, "CallbackNlp")
+      .def(py::init([](py::function evaluate, py::function differentiate, const SparseArrays& jacobian,
+                       const SparseArrays& hessian) {
+             return std::make_shared<banded::CallbackNlp>(std::move(evaluate), std::move(differentiate),
+                                                          sparse_of(jacobian), sparse_of(hessian));
+           }),
+           py::kw_only(), py::arg("evaluate"), py::arg("differentiate"), py::arg("jacobian"), py::arg("hessian"));
+  py::class_<Solver>(module, "InteriorPoint")
+      .def(py::init<std::shared_ptr<banded::Nlp>, std::vector<std::vector<int>>>(), py::arg("nlp"), py::arg("blocks"))
+      .def("multiplications", [](const Solver& solver) { return solver.point.multiplications(); },
+           "Multiplications of one factorisation.")
+      .def(
+          "solve",
+          [](Solver& solver, const Doubles& lower_x, const Doubles& upper_x, const Doubles& lower_g,
+             const Doubles& upper_g, const Doubles& x0, const std::optional<std::tuple<Doubles, Doubles>>& warm,
+             double tolerance, double objective_scaling, double seconds, double mu, double push, int max_iterations,
+             int verbose) {
+            const banded::Options options{tolerance, objective_scaling, seconds, mu, push, max_iterations, verbose};
+            return solve(solver.point, *solver.nlp, lower_x, upper_x, lower_g, upper_g, x0, warm, options);
+          },
+          py::kw_only(), py::arg("lower_x"), py::arg("upper_x"), py::arg("lower_g"), py::arg("upper_g"),
+          py::arg("x0"), py::arg("warm") = py::none(), py::arg("tolerance") = 1e-6,
+          py::arg("objective_scaling") = 0.1, py::arg("seconds") = 1e20, py::arg("mu") = 0.1, py::arg("push") = 1e-2,
+          py::arg("max_iterations") = 500, py::arg("verbose") = 0);
+}

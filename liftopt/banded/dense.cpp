@@ -1,0 +1,144 @@
+// One body for all instruction sets: GCC's and Clang's vector types lower to what the target has. The shapes of the
+// register tiles differ: the accumulators must fit the registers and be as many as hide the latency of an addition.
+#include "dense.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#define LIFTOPT_INLINE inline __attribute__((always_inline))
+
+namespace banded {
+namespace {
+
+typedef double Lane __attribute__((vector_size(8 * kLanes), aligned(64)));
+
+template <int Height, int Width>
+LIFTOPT_INLINE void multiply_tile(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int depth,
+                                  double sign) {
+  Lane sum[Width][Height];
+  for (int j = 0; j < Width; ++j)
+    for (int i = 0; i < Height; ++i) sum[j][i] = Lane{};
+  for (int l = 0; l < depth; ++l) {
+    const Lane* column = reinterpret_cast<const Lane*>(a + static_cast<long>(lda) * l);
+    const double* row = b + static_cast<long>(ldb) * l;
+#pragma GCC unroll 8
+    for (int j = 0; j < Width; ++j)
+#pragma GCC unroll 4
+      for (int i = 0; i < Height; ++i) sum[j][i] += column[i] * row[j];
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < Width; ++j) {
+    Lane* column = reinterpret_cast<Lane*>(c + static_cast<long>(ldc) * j);
+#pragma GCC unroll 4
+    for (int i = 0; i < Height; ++i) column[i] += sign * sum[j][i];
+  }
+}
+
+template <int Tall, int Width>
+LIFTOPT_INLINE void multiply_add(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,
+                                 int columns, int depth, double sign) {
+  for (int j = 0; j < columns; j += Width) {
+    double* cj = c + static_cast<long>(ldc) * j;
+    int i = 0;
+    for (; i + Tall * kLanes <= rows; i += Tall * kLanes)
+      multiply_tile<Tall, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, sign);
+    for (; i < rows; i += kLanes) multiply_tile<1, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, sign);
+  }
+}
+
+LIFTOPT_INLINE bool factorise(double* a, int ld, int n, double* inverse, double threshold) {
+  const int lanes = ld / kLanes;
+  for (int j = 0; j < n; ++j) {
+    double* column = a + static_cast<long>(ld) * j;
+    if (!(column[j] > threshold)) return false;
+    const double pivot = std::sqrt(column[j]), scale = 1.0 / pivot;
+    Lane* from = reinterpret_cast<Lane*>(column);
+    for (int r = j / kLanes; r < lanes; ++r) from[r] *= scale;
+    for (int k = j + 1; k < n; ++k) {
+      const double factor = column[k];
+      Lane* to = reinterpret_cast<Lane*>(a + static_cast<long>(ld) * k);
+      for (int r = k / kLanes; r < lanes; ++r) to[r] -= from[r] * factor;
+    }
+    // Rows above the diagonal hold what symmetry left there.
+    for (int r = 0; r < j; ++r) column[r] = 0.0;
+  }
+  std::memset(inverse, 0, sizeof(double) * ld * padded(n));
+  for (int c = 0; c < n; ++c) inverse[static_cast<long>(ld) * c + c] = 1.0;
+  for (int j = 0; j < n; ++j) {
+    const double* column = a + static_cast<long>(ld) * j;
+    const Lane* lower = reinterpret_cast<const Lane*>(column);
+    const double scale = 1.0 / column[j];
+    for (int c = 0; c <= j; ++c) {
+      double* x = inverse + static_cast<long>(ld) * c;
+      const double value = x[j] * scale;
+      Lane* to = reinterpret_cast<Lane*>(x);
+      // The first lane holds rows up to j too: the zeros above the diagonal keep them, row j is set afterwards.
+      for (int r = j / kLanes; r < lanes; ++r) to[r] -= lower[r] * value;
+      x[j] = value;
+    }
+  }
+  return true;
+}
+
+LIFTOPT_INLINE void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,
+                                    double sign) {
+  Lane* to = reinterpret_cast<Lane*>(y);
+  for (int j = 0; j < columns; ++j) {
+    const Lane* column = reinterpret_cast<const Lane*>(a + static_cast<long>(lda) * j);
+    const double factor = sign * x[j];
+    for (int r = 0; r < rows / kLanes; ++r) to[r] += column[r] * factor;
+  }
+}
+
+LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int rows, int columns, const double* x,
+                                        double sign) {
+  const Lane* from = reinterpret_cast<const Lane*>(x);
+  for (int j = 0; j < columns; ++j) {
+    const Lane* column = reinterpret_cast<const Lane*>(a + static_cast<long>(lda) * j);
+    Lane sum{};
+    for (int r = 0; r < rows / kLanes; ++r) sum += column[r] * from[r];
+    double total = 0.0;
+    for (int r = 0; r < kLanes; ++r) total += sum[r];
+    y[j] += sign * total;
+  }
+}
+
+// The same bodies for a target: its name, its attribute, and the tile of lanes by columns.
+#define LIFTOPT_VARIANT(NAME, TARGET, TALL, WIDTH)                                                                  \
+  namespace NAME {                                                                                                  \
+  TARGET void multiply_add(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,        \
+                           int columns, int depth, double sign) {                                                   \
+    banded::multiply_add<TALL, WIDTH>(c, ldc, a, lda, b, ldb, rows, columns, depth, sign);                          \
+  }                                                                                                                 \
+  TARGET bool factorise(double* a, int ld, int n, double* inverse, double threshold) {                              \
+    return banded::factorise(a, ld, n, inverse, threshold);                                                         \
+  }                                                                                                                 \
+  TARGET void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,          \
+                              double sign) {                                                                        \
+    banded::multiply_vector(y, a, lda, rows, columns, x, sign);                                                     \
+  }                                                                                                                 \
+  TARGET void multiply_transposed(double* y, const double* a, int lda, int rows, int columns, const double* x,      \
+                                  double sign) {                                                                    \
+    banded::multiply_transposed(y, a, lda, rows, columns, x, sign);                                                 \
+  }                                                                                                                 \
+  const DenseOperations all = {#NAME, multiply_add, factorise, multiply_vector, multiply_transposed};               \
+  }
+
+LIFTOPT_VARIANT(portable, , 1, 2)
+#if defined(__x86_64__)
+LIFTOPT_VARIANT(avx2, __attribute__((target("avx2,fma"))), 1, 4)
+LIFTOPT_VARIANT(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), 3, 8)
+#endif
+
+}  // namespace
+
+const DenseOperations& dense_operations() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    return avx512::all;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::all;
+#endif
+  return portable::all;
+}
+
+}  // namespace banded

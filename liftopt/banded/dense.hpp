@@ -1,0 +1,34 @@
+// Operations on small dense blocks, in the widest instructions the processor has.
+//
+// A block is column-major; its rows are padded with zeros to a multiple of kLanes, its start is aligned to a lane.
+#pragma once
+
+namespace banded {
+
+constexpr int kLanes = 8;
+
+inline int padded(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
+
+struct DenseOperations {
+  const char* name;
+
+  // C (rows x columns) += sign A B^T, A (rows x depth), B (columns x depth); rows and columns padded, depth not.
+  void (*multiply_add)(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows, int columns,
+                       int depth, double sign);
+
+  // A = L L^T in place on the lower triangle of A (n x n, columns ld apart), and L^-1; false where A is not positive
+  // definite by more than rounding: a pivot must exceed `threshold`.
+  bool (*factorise)(double* a, int ld, int n, double* inverse, double threshold);
+
+  // y (rows) += sign A x, x (columns).
+  void (*multiply_vector)(double* y, const double* a, int lda, int rows, int columns, const double* x, double sign);
+
+  // y (columns) += sign A^T x, x (rows).
+  void (*multiply_transposed)(double* y, const double* a, int lda, int rows, int columns, const double* x,
+                              double sign);
+};
+
+// The fastest variant that this processor can run.
+const DenseOperations& dense_operations();
+
+}  // namespace banded

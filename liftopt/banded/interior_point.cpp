@@ -1,0 +1,310 @@
+#include "interior_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "clock.hpp"
+
+namespace banded {
+namespace {
+
+// Table of constants in section 3 of the paper.
+constexpr double kBarrierError = 10.0, kLinearDecrease = 0.2, kSuperlinear = 1.5, kLeastTau = 0.99;
+constexpr double kMultiplierScale = 100.0;
+constexpr int kMostHalvings = 24, kMostCorrections = 2, kMostShifts = 6;
+constexpr double kFirstShift = 1e-2, kShiftGrowth = 10.0;
+constexpr double kStationaryViolation = 1e-4;
+
+double largest(const Vector& v) {
+  double worst = 0.0;
+  for (double entry : v) worst = std::fabs(entry) > worst || std::isnan(entry) ? std::fabs(entry) : worst;
+  return worst;
+}
+
+}  // namespace
+
+InteriorPoint::InteriorPoint(Nlp& nlp, std::vector<std::vector<int>> blocks) : nlp_(nlp), newton_(nlp, std::move(blocks)) {
+  const int n = nlp.unknowns(), m = nlp.rows();
+  for (Vector* v : {&lagrangian_, &sigma_x_, &right_}) v->resize(n);
+  for (Vector* v : {&lambda_, &residual_, &sigma_s_, &centre_, &ds_, &dlambda_, &rows_}) v->resize(m);
+  for (Point* point : {&now_, &trial_}) {
+    point->x.resize(n);
+    point->s.resize(m);
+    point->g.resize(m);
+  }
+}
+
+Result InteriorPoint::solve(const double* lower_x, const double* upper_x, const double* lower_g, const double* upper_g,
+                            const double* x0, const double* warm_x, const double* warm_g, const Options& options) {
+  const double began = seconds_now();
+  options_ = options;
+  evaluations_ = 0;
+  evaluation_seconds_ = 0.0;
+  x_ = Bounded(lower_x, upper_x, nlp_.unknowns());
+  s_ = Bounded(lower_g, upper_g, nlp_.rows());
+  equality_.assign(nlp_.rows(), 0);
+  for (int i : s_.held()) equality_[i] = 1;
+  newton_.begin(equality_, x_.held());
+  start(x0, warm_x, warm_g);
+
+  Result result;
+  const double least_mu = 0.1 * options.tolerance * options.objective_scaling;
+  for (;; ++result.iterations) {
+    differentiate();
+    result.error = original_error();
+    if (options.verbose)
+      std::printf("%3d f %.8g theta %.1e error %.1e mu %.1e delta %.1e length %.1e factorisations %d refinements %d\n",
+                  result.iterations, now_.f, merit(now_).theta, result.error, mu_, newton_.delta(), length_,
+                  newton_.factorisations, newton_.refinements);
+    if (!std::isfinite(result.error)) result.status = Status::invalid;
+    else if (result.error <= options.tolerance) result.status = Status::solved;
+    else if (result.iterations >= options.max_iterations) result.status = Status::iterations;
+    else if (seconds_now() - began > options.seconds) result.status = Status::time;
+    else {
+      while (mu_ > least_mu && barrier_error(mu_) <= kBarrierError * mu_) {
+        mu_ = std::max(least_mu, std::min(kLinearDecrease * mu_, std::pow(mu_, kSuperlinear)));
+        filter_.clear();
+      }
+      tau_ = std::max(kLeastTau, 1.0 - mu_);
+      if (step()) continue;
+      result.status = stuck() ? Status::infeasible : Status::line_search;
+    }
+    break;
+  }
+  finish(result);
+  result.seconds = seconds_now() - began;
+  return result;
+}
+
+void InteriorPoint::start(const double* x0, const double* warm_x, const double* warm_g) {
+  const double scale = options_.objective_scaling;
+  mu_ = options_.mu;
+  std::copy_n(x0, x_.size(), x_.value.begin());
+  x_.push_inside(options_.push);
+  now_.x = x_.value;
+  evaluate(now_);
+  s_.value = now_.g;
+  s_.push_inside(options_.push);
+  now_.s = s_.value;
+  if (warm_x != nullptr && warm_g != nullptr) {
+    Vector scaled(x_.size());
+    for (int i = 0; i < x_.size(); ++i) scaled[i] = scale * warm_x[i];
+    x_.warm(scaled.data(), mu_);
+    for (int i = 0; i < s_.size(); ++i) lambda_[i] = scale * warm_g[i];
+    s_.warm(lambda_.data(), mu_);
+  } else {
+    x_.centre(mu_);
+    s_.centre(mu_);
+    for (int i = 0; i < s_.size(); ++i) lambda_[i] = s_.z_high[i] - s_.z_low[i];
+  }
+  filter_ = Filter(merit(now_).theta);
+}
+
+double InteriorPoint::evaluate(Point& point) {
+  const double began = seconds_now();
+  point.f = options_.objective_scaling * nlp_.evaluate(point.x.data(), point.g.data());
+  evaluation_seconds_ += seconds_now() - began;
+  ++evaluations_;
+  return point.f;
+}
+
+void InteriorPoint::differentiate() {
+  const double began = seconds_now();
+  nlp_.differentiate(now_.x.data(), lambda_.data(), options_.objective_scaling);
+  evaluation_seconds_ += seconds_now() - began;
+  lagrangian_ = nlp_.gradient;
+  nlp_.jacobian.multiply_transposed(lambda_.data(), lagrangian_.data());
+  residuals();
+}
+
+void InteriorPoint::residuals() {
+  for (int i = 0; i < s_.size(); ++i) residual_[i] = now_.g[i] - now_.s[i];
+}
+
+// E_mu of (5) for the scaled problem.
+double InteriorPoint::barrier_error(double mu) const {
+  double dual = 0.0, multipliers = x_.multiplier_sum() + s_.multiplier_sum(), all = multipliers;
+  for (int i = 0; i < x_.size(); ++i)
+    if (!x_.is_held(i)) dual = std::max(dual, std::fabs(lagrangian_[i] - x_.z_low[i] + x_.z_high[i]));
+  for (int i = 0; i < s_.size(); ++i) {
+    all += std::fabs(lambda_[i]);
+    if (!s_.is_held(i)) dual = std::max(dual, std::fabs(-lambda_[i] - s_.z_low[i] + s_.z_high[i]));
+  }
+  const int sides = std::max(1, x_.sides() + s_.sides());
+  const double s_d = std::max(kMultiplierScale, all / (s_.size() + sides)) / kMultiplierScale;
+  const double s_c = std::max(kMultiplierScale, multipliers / sides) / kMultiplierScale;
+  const double products = std::max(x_.complementarity(mu), s_.complementarity(mu));
+  return std::max({dual / s_d, largest(residual_), products / s_c});
+}
+
+// E_0 of (5) for the problem as it was given: unscaled, and without slacks.
+double InteriorPoint::original_error() const {
+  const double scale = options_.objective_scaling;
+  double dual = 0.0, violation = 0.0, products = 0.0, all = 0.0, bounded = 0.0;
+  int count = 0, sided = 0;
+  const auto add = [&](const Bounded& side, int i, double multiplier, double value) {
+    const double size = std::fabs(multiplier);
+    all += size;
+    ++count;
+    if (side.is_held(i)) return;
+    bounded += size;
+    ++sided;
+    const double distance = multiplier < 0.0 ? value - side.lower[i] : side.upper[i] - value;
+    products = std::max(products, size * (std::isfinite(distance) ? std::fabs(distance) : 1.0));
+  };
+  for (int i = 0; i < x_.size(); ++i) {
+    if (x_.is_held(i)) continue;
+    const double multiplier = (x_.z_high[i] - x_.z_low[i]) / scale;
+    const double slope = std::fabs(lagrangian_[i] / scale + multiplier);
+    dual = slope > dual || std::isnan(slope) ? slope : dual;
+    add(x_, i, multiplier, now_.x[i]);
+  }
+  for (int i = 0; i < s_.size(); ++i) {
+    add(s_, i, lambda_[i] / scale, now_.g[i]);
+    const double outside = std::max(s_.lower[i] - now_.g[i], now_.g[i] - s_.upper[i]);
+    violation = outside > violation || std::isnan(outside) ? outside : violation;
+  }
+  const double s_d = std::max(kMultiplierScale, all / std::max(1, count)) / kMultiplierScale;
+  const double s_c = std::max(kMultiplierScale, bounded / std::max(1, sided)) / kMultiplierScale;
+  return std::isfinite(dual + violation) ? std::max({dual / s_d, violation, products / s_c}) : NAN;
+}
+
+Merit InteriorPoint::merit(const Point& point) const {
+  double theta = 0.0;
+  for (int i = 0; i < s_.size(); ++i) theta += std::fabs(point.g[i] - point.s[i]);
+  return {theta, point.f - mu_ * (x_.logarithms(point.x.data()) + s_.logarithms(point.s.data()))};
+}
+
+// Solve for dx, ds and dlambda, where `residual` is g - s or what a second-order correction puts in its place.
+void InteriorPoint::solve_newton(const Vector& residual) {
+  std::fill(right_.begin(), right_.end(), 0.0);
+  for (int i = 0; i < s_.size(); ++i) rows_[i] = equality_[i] ? 0.0 : sigma_s_[i] * residual[i] + centre_[i];
+  nlp_.jacobian.multiply_transposed(rows_.data(), right_.data());
+  for (int i = 0; i < x_.size(); ++i) right_[i] += lagrangian_[i];
+  x_.add_barrier_gradient(mu_, right_.data());
+  for (double& entry : right_) entry = -entry;
+  for (int i : x_.held()) right_[i] = 0.0;
+  newton_.solve(right_.data(), residual.data());
+  for (int i = 0; i < s_.size(); ++i) {
+    ds_[i] = equality_[i] ? 0.0 : newton_.j_dx[i] + residual[i];
+    dlambda_[i] = equality_[i] ? newton_.dlambda[i] : sigma_s_[i] * ds_[i] + centre_[i];
+  }
+}
+
+bool InteriorPoint::step() {
+  x_.sigma(sigma_x_.data());
+  s_.sigma(sigma_s_.data());
+  for (int i = 0; i < s_.size(); ++i) centre_[i] = -lambda_[i];
+  s_.add_barrier_gradient(mu_, centre_.data());
+  double shift = 0.0;
+  for (int attempt = 0; attempt < kMostShifts; ++attempt) {
+    if (!newton_.factorise(sigma_x_.data(), sigma_s_.data(), shift)) return false;
+    solve_newton(residual_);
+    if (search()) return true;
+    shift = std::max(kFirstShift, kShiftGrowth * newton_.delta());
+    if (attempt == 2) filter_.clear();
+  }
+  return false;
+}
+
+// Backtracking line search along the Newton step (steps ).
+bool InteriorPoint::search() {
+  x_.find_multiplier_steps(mu_, newton_.dx.data());
+  s_.find_multiplier_steps(mu_, ds_.data());
+  const double multiplier_length = std::min(x_.longest_multiplier_step(tau_), s_.longest_multiplier_step(tau_));
+  from_ = merit(now_);
+  // The slope of phi along the step: its gradient by x is that of the Lagrangian less J^T lambda.
+  std::copy(lagrangian_.begin(), lagrangian_.end(), right_.begin());
+  x_.add_barrier_gradient(mu_, right_.data());
+  slope_ = 0.0;
+  for (int i = 0; i < x_.size(); ++i) slope_ += right_[i] * newton_.dx[i];
+  for (int i = 0; i < s_.size(); ++i) slope_ += -lambda_[i] * newton_.j_dx[i] + (centre_[i] + lambda_[i]) * ds_[i];
+  length_ = std::min(x_.longest_step(tau_, newton_.dx.data()), s_.longest_step(tau_, ds_.data()));
+  for (int halving = 0; halving < kMostHalvings; ++halving, length_ *= 0.5) {
+    if (try_point(length_, newton_.dx, ds_, length_) || (halving == 0 && correct(length_))) {
+      move(multiplier_length);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool InteriorPoint::try_point(double length, const Vector& dx, const Vector& ds, double armijo_length) {
+  for (int i = 0; i < x_.size(); ++i) trial_.x[i] = now_.x[i] + length * dx[i];
+  for (int i = 0; i < s_.size(); ++i) trial_.s[i] = now_.s[i] + length * ds[i];
+  evaluate(trial_);
+  return filter_.accepts(from_, merit(trial_), slope_, armijo_length);
+}
+
+// Second-order corrections (section 2.4): the same matrix, the residual of the trial point added. The multipliers
+// keep the step of the uncorrected direction.
+bool InteriorPoint::correct(double length) {
+  double theta = merit(trial_).theta;
+  if (!(theta >= from_.theta)) return false;
+  const Vector dx = newton_.dx, ds = ds_, dlambda = dlambda_, j_dx = newton_.j_dx;
+  Vector residual = residual_;
+  double factor = length;
+  bool accepted = false;
+  for (int k = 0; k < kMostCorrections && !accepted; ++k) {
+    for (int i = 0; i < s_.size(); ++i) residual[i] = factor * residual[i] + trial_.g[i] - trial_.s[i];
+    solve_newton(residual);
+    factor = std::min(x_.longest_step(tau_, newton_.dx.data()), s_.longest_step(tau_, ds_.data()));
+    accepted = try_point(factor, newton_.dx, ds_, length);
+    const double corrected = merit(trial_).theta;
+    if (!(corrected <= 0.99 * theta)) break;
+    theta = corrected;
+  }
+  newton_.dx = dx;
+  newton_.j_dx = j_dx;
+  ds_ = ds;
+  dlambda_ = dlambda;
+  return accepted;
+}
+
+void InteriorPoint::move(double multiplier_length) {
+  std::swap(now_, trial_);
+  x_.value = now_.x;
+  s_.value = now_.s;
+  for (int i = 0; i < s_.size(); ++i) lambda_[i] += length_ * dlambda_[i];
+  x_.move_multipliers(multiplier_length, mu_);
+  s_.move_multipliers(multiplier_length, mu_);
+}
+
+// Whether the violation is stationary: its projected gradient is small beside it.
+bool InteriorPoint::stuck() const {
+  Vector violation(s_.size()), gradient(x_.size(), 0.0);
+  double norm = 0.0;
+  for (int i = 0; i < s_.size(); ++i) {
+    violation[i] = std::max(0.0, now_.g[i] - s_.upper[i]) - std::max(0.0, s_.lower[i] - now_.g[i]);
+    norm = std::max(norm, std::fabs(violation[i]));
+  }
+  if (norm <= options_.tolerance) return false;
+  nlp_.jacobian.multiply_transposed(violation.data(), gradient.data());
+  double worst = 0.0;
+  for (int i = 0; i < x_.size(); ++i) {
+    if (x_.is_held(i)) continue;
+    const double moved = std::min(std::max(now_.x[i] - gradient[i], x_.lower[i]), x_.upper[i]) - now_.x[i];
+    worst = std::max(worst, std::fabs(moved));
+  }
+  return worst <= kStationaryViolation * norm;
+}
+
+void InteriorPoint::finish(Result& result) {
+  const double scale = options_.objective_scaling;
+  result.x = now_.x;
+  result.objective = now_.f / scale;
+  result.multipliers.resize(s_.size());
+  for (int i = 0; i < s_.size(); ++i) result.multipliers[i] = lambda_[i] / scale;
+  result.bound_multipliers.resize(x_.size());
+  for (int i = 0; i < x_.size(); ++i)
+    result.bound_multipliers[i] = (x_.is_held(i) ? -lagrangian_[i] : x_.z_high[i] - x_.z_low[i]) / scale;
+  result.factorisations = newton_.factorisations;
+  result.refinements = newton_.refinements;
+  result.evaluations = evaluations_;
+  result.evaluation_seconds = evaluation_seconds_;
+  result.assembly_seconds = newton_.assembly_seconds;
+  result.factorisation_seconds = newton_.factorisation_seconds;
+}
+
+}  // namespace banded

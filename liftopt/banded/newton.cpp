@@ -1,0 +1,121 @@
+#include "newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clock.hpp"
+
+namespace banded {
+namespace {
+
+constexpr double kPenalty = 1e6;
+// delta_w of Waechter and Biegler (2006), section 3.1 and table 3.
+constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;
+constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 1.0 / 3.0;
+constexpr int kMostRefinements = 5;
+// Residuals of the linear system at which refinement stops, relative to the right-hand side.
+constexpr double kDualResidual = 1e-10, kPrimalResidual = 1e-3;
+
+double largest(const Vector& v) {
+  double worst = 0.0;
+  for (double entry : v) worst = std::max(worst, std::fabs(entry));
+  return worst;
+}
+
+}  // namespace
+
+Newton::Newton(const Nlp& nlp, std::vector<std::vector<int>> blocks)
+    : dx(nlp.unknowns()), j_dx(nlp.rows()), dlambda(nlp.rows()), nlp_(nlp),
+      condensed_(nlp.hessian, nlp.jacobian, std::move(blocks)), row_weight_(nlp.rows()), diagonal_(nlp.unknowns()),
+      sigma_rows_(nlp.rows()), sigma_x_(nlp.unknowns()), step_(nlp.unknowns()), rows_(nlp.rows()),
+      residual_(nlp.unknowns()), row_residual_(nlp.rows()) {}
+
+void Newton::begin(const std::vector<char>& equality, const std::vector<int>& held) {
+  equality_ = equality;
+  held_ = held;
+  delta_ = last_delta_ = 0.0;
+  factorisations = refinements = 0;
+  assembly_seconds = factorisation_seconds = 0.0;
+}
+
+bool Newton::try_delta(const double* sigma_x) {
+  double now = seconds_now();
+  for (int i = 0; i < nlp_.unknowns(); ++i) diagonal_[i] = sigma_x[i] + delta_;
+  condensed_.assemble(nlp_.hessian, nlp_.jacobian, row_weight_.data(), diagonal_.data(), held_);
+  double then = seconds_now();
+  assembly_seconds += then - now;
+  const bool done = condensed_.factorise();
+  factorisation_seconds += seconds_now() - then;
+  ++factorisations;
+  return done;
+}
+
+bool Newton::factorise(const double* sigma_x, const double* sigma_s, double least_delta) {
+  for (int r = 0; r < nlp_.rows(); ++r) {
+    sigma_rows_[r] = nlp_.squares[r] + (equality_[r] ? 0.0 : sigma_s[r]);
+    row_weight_[r] = sigma_rows_[r] + (equality_[r] ? kPenalty : 0.0);
+  }
+  std::copy_n(sigma_x, nlp_.unknowns(), sigma_x_.begin());
+  delta_ = least_delta;
+  if (try_delta(sigma_x)) {
+    if (delta_ > 0.0) last_delta_ = delta_;
+    return true;
+  }
+  const bool first = last_delta_ == 0.0;
+  delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
+  while (!try_delta(sigma_x)) {
+    delta_ *= first ? kFirstGrowth : kGrowth;
+    if (!(delta_ < kLargestDelta)) return false;
+  }
+  last_delta_ = delta_;
+  return true;
+}
+
+// Add to the step the solution for the residuals r and c.
+void Newton::correct(const double* r, const double* c) {
+  for (int i = 0; i < nlp_.rows(); ++i) rows_[i] = equality_[i] ? -kPenalty * c[i] : 0.0;
+  std::copy_n(r, nlp_.unknowns(), step_.begin());
+  nlp_.jacobian.multiply_transposed(rows_.data(), step_.data());
+  for (int i : held_) step_[i] = 0.0;
+  condensed_.solve(step_.data());
+  for (int i : held_) step_[i] = 0.0;
+  std::fill(rows_.begin(), rows_.end(), 0.0);
+  nlp_.jacobian.multiply(step_.data(), rows_.data());
+  for (int i = 0; i < nlp_.unknowns(); ++i) dx[i] += step_[i];
+  for (int i = 0; i < nlp_.rows(); ++i) {
+    j_dx[i] += rows_[i];
+    if (equality_[i]) dlambda[i] += kPenalty * (rows_[i] + c[i]);
+  }
+}
+
+void Newton::solve(const double* r, const double* c) {
+  std::fill(dx.begin(), dx.end(), 0.0);
+  std::fill(j_dx.begin(), j_dx.end(), 0.0);
+  std::fill(dlambda.begin(), dlambda.end(), 0.0);
+  double right = 1.0, primal_right = 0.0;
+  for (int i = 0; i < nlp_.unknowns(); ++i) right = std::max(right, std::fabs(r[i]));
+  for (int i = 0; i < nlp_.rows(); ++i)
+    if (equality_[i]) primal_right = std::max(primal_right, std::fabs(c[i]));
+  correct(r, c);
+  double before = INFINITY;
+  for (int k = 0; k < kMostRefinements; ++k) {
+    std::fill(residual_.begin(), residual_.end(), 0.0);
+    nlp_.hessian.multiply_symmetric(dx.data(), residual_.data());
+    for (int i = 0; i < nlp_.rows(); ++i) {
+      row_residual_[i] = equality_[i] ? c[i] + j_dx[i] : 0.0;
+      rows_[i] = sigma_rows_[i] * j_dx[i] + (equality_[i] ? dlambda[i] : 0.0);
+    }
+    nlp_.jacobian.multiply_transposed(rows_.data(), residual_.data());
+    for (int i = 0; i < nlp_.unknowns(); ++i) residual_[i] = r[i] - residual_[i] - (sigma_x_[i] + delta_) * dx[i];
+    for (int i : held_) residual_[i] = 0.0;
+    const double dual = largest(residual_) / right;
+    const double primal = largest(row_residual_) / std::max(primal_right, 1e-7);
+    const double worst = std::max(dual / kDualResidual, primal / kPrimalResidual);
+    if (worst < 1.0 || !(worst < 0.9 * before)) return;
+    before = worst;
+    ++refinements;
+    correct(residual_.data(), row_residual_.data());
+  }
+}
+
+}  // namespace banded

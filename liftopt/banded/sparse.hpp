@@ -1,0 +1,50 @@
+// A sparse matrix in compressed rows.
+#pragma once
+
+#include <vector>
+
+#include "aligned.hpp"
+
+namespace banded {
+
+struct Sparse {
+  int rows = 0, columns = 0;
+  std::vector<int> start, index;
+  Vector value;
+
+  int nonzeros() const { return static_cast<int>(index.size()); }
+
+  // y += A x
+  void multiply(const double* x, double* y) const {
+    for (int r = 0; r < rows; ++r) {
+      double sum = 0.0;
+      for (int k = start[r]; k < start[r + 1]; ++k) sum += value[k] * x[index[k]];
+      y[r] += sum;
+    }
+  }
+
+  // y += A^T x
+  void multiply_transposed(const double* x, double* y) const {
+    for (int r = 0; r < rows; ++r) {
+      const double factor = x[r];
+      if (factor == 0.0) continue;
+      for (int k = start[r]; k < start[r + 1]; ++k) y[index[k]] += value[k] * factor;
+    }
+  }
+
+  // y += A x where these are the entries on and above the diagonal of a symmetric matrix
+  void multiply_symmetric(const double* x, double* y) const {
+    for (int r = 0; r < rows; ++r) {
+      double sum = 0.0;
+      const double factor = x[r];
+      for (int k = start[r]; k < start[r + 1]; ++k) {
+        const int c = index[k];
+        sum += value[k] * x[c];
+        if (c != r) y[c] += value[k] * factor;
+      }
+      y[r] += sum;
+    }
+  }
+};
+
+}  // namespace banded
