@@ -40,18 +40,13 @@ Sparse sparse_of(const SparseArrays& arrays) {
   return matrix;
 }
 
-banded::KernelCall kernel_of(const py::handle& call) {
-  const auto [address, n_arg, n_res, n_iw, n_w] = call.cast<std::tuple<std::uintptr_t, int, int, int, int>>();
-  return {reinterpret_cast<banded::Kernel>(address), n_arg, n_res, n_iw, n_w};
-}
-
 banded::KernelPart part_of(const py::dict& given) {
   banded::KernelPart part;
-  part.value = kernel_of(given["value"]);
-  part.jacobian = kernel_of(given["jacobian"]);
-  part.curvature = kernel_of(given["curvature"]);
+  part.value = reinterpret_cast<banded::Kernel>(given["value"].cast<std::uintptr_t>());
+  part.derivatives = reinterpret_cast<banded::Kernel>(given["derivatives"].cast<std::uintptr_t>());
   part.n_y = given["n_y"].cast<int>();
   part.n_c = given["n_c"].cast<int>();
+  part.n_p = given["n_p"].cast<int>();
   part.jacobian_nonzeros = given["jacobian_nonzeros"].cast<int>();
   part.curvature_nonzeros = given["curvature_nonzeros"].cast<int>();
   part.select = sparse_of(given["select"].cast<SparseArrays>());
@@ -60,7 +55,7 @@ banded::KernelPart part_of(const py::dict& given) {
   return part;
 }
 
-std::unique_ptr<banded::KernelNlp> kernel_nlp(const std::vector<py::dict>& parts, const Doubles& weights,
+std::unique_ptr<banded::KernelNlp> kernel_nlp(int lanes, const std::vector<py::dict>& parts, const Doubles& weights,
                                               const SparseArrays& combine, const SparseArrays& linear,
                                               const SparseArrays& jacobian, const SparseArrays& jacobian_scatter,
                                               const Doubles& jacobian_offset, const SparseArrays& hessian,
@@ -68,7 +63,7 @@ std::unique_ptr<banded::KernelNlp> kernel_nlp(const std::vector<py::dict>& parts
   std::vector<banded::KernelPart> all;
   for (const py::dict& part : parts) all.push_back(part_of(part));
   return std::make_unique<banded::KernelNlp>(
-      std::move(all), vector_of(weights), sparse_of(combine), sparse_of(linear), sparse_of(jacobian),
+      lanes, std::move(all), vector_of(weights), sparse_of(combine), sparse_of(linear), sparse_of(jacobian),
       banded::Scatter{sparse_of(jacobian_scatter), vector_of(jacobian_offset)}, sparse_of(hessian),
       banded::Scatter{sparse_of(hessian_scatter), vector_of(hessian_offset)});
 }
@@ -129,7 +124,7 @@ PYBIND11_MODULE(_liftopt_banded, module) {
   module.def("instructions", [] { return banded::dense_operations().name; }, "Instruction set that is used.");
   py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp");
   py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
-      .def(py::init(&kernel_nlp), py::kw_only(), py::arg("parts"), py::arg("weights"), py::arg("combine"),
+      .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("parts"), py::arg("weights"), py::arg("combine"),
            py::arg("linear"), py::arg("jacobian"), py::arg("jacobian_scatter"), py::arg("jacobian_offset"),
            py::arg("hessian"), py::arg("hessian_scatter"), py::arg("hessian_offset"))
       .def("set_parameters", [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,

@@ -8,7 +8,6 @@ damaged or somebody else's is never loaded. Without a compiler, CasADi's virtual
 
 from __future__ import annotations
 
-import ctypes
 import hashlib
 import os
 import platform
@@ -39,7 +38,7 @@ class Kernel:
 
     Attributes:
         value, gradient, jacobian, curvature, squares: as there.
-        library: the loaded library that holds them; None where CasADi's virtual machine evaluates them.
+        compiled: False where CasADi's virtual machine evaluates them.
     """
 
     value: Any
@@ -47,17 +46,7 @@ class Kernel:
     jacobian: Any
     curvature: Any
     squares: Any
-    library: ctypes.CDLL | None
-
-    @property
-    def compiled(self) -> bool:
-        """Whether the functions are machine code."""
-        return self.library is not None
-
-    def address(self, role: str) -> int:
-        """Return where a function of a compiled kernel is in memory; it has CasADi's calling convention for C."""
-        function = getattr(self.library, getattr(self, role).name())
-        return int(ctypes.cast(function, ctypes.c_void_p).value or 0)
+    compiled: bool
 
     @property
     def n_y(self) -> int:
@@ -88,7 +77,7 @@ def load_kernels(requests: Sequence[tuple[Builder, Topology]], say: Say | None =
         say: called with a line of progress when there is something to wait for.
     """
     say = say or (lambda line: None)
-    keys = [_key(builder, topology) for builder, topology in requests]
+    keys = [kernel_key(builder, topology) for builder, topology in requests]
     found: dict[str, Kernel] = {}
     folder = cache_folder()
     for key in dict.fromkeys(keys):
@@ -125,7 +114,8 @@ def find_compiler() -> list[str] | None:
     return next(([path] for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None)
 
 
-def _key(builder: Builder, topology: Topology) -> str:
+def kernel_key(builder: Builder, topology: Topology) -> str:
+    """Return a digest of all that the functions of a topology are generated from."""
     digest = hashlib.sha256()
     for part in (builder.__name__, topology.signature(), platform.machine(), platform.system(), *FLAGS):
         digest.update(part.encode() + b"\0")
@@ -140,7 +130,7 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
     compiler = find_compiler()
     say("building the equations of motion")
     functions = {key: builder(topology) for key, (builder, topology) in missing.items()}
-    interpreted = {key: _kernel([getattr(f, role) for role in ROLES], None) for key, f in functions.items()}
+    interpreted = {key: _kernel([getattr(f, role) for role in ROLES], compiled=False) for key, f in functions.items()}
     if compiler is None:
         say("no C compiler found: CasADi's virtual machine evaluates the dynamics, several times slower")
         return interpreted
@@ -155,9 +145,8 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
             if process.returncode != 0 or not built.exists():
                 say(f"the C compiler failed ({(errors or 'no message').strip().splitlines()[-1:]}): using the VM")
                 continue
-            _seal(built)
             # Without a folder to keep it the library is loaded from the work folder; it stays mapped when that goes.
-            path = _publish(built, folder / built.name) if folder is not None else built
+            path = keep(built, folder)
             if kernel := _load(path, key):
                 kernels[key] = kernel
             else:
@@ -179,6 +168,12 @@ def _start_compiler(compiler: list[str], work: Path, key: str, functions: KnotFu
 
 def _symbol(role: str, key: str) -> str:
     return f"{role}_{key[:12]}"
+
+
+def keep(built: Path, folder: Path | None) -> Path:
+    """Seal a library and move it to the cache folder, if there is one; return where it is."""
+    _seal(built)
+    return _publish(built, folder / built.name) if folder is not None else built
 
 
 def _seal(path: Path) -> None:
@@ -211,21 +206,25 @@ def _is_ours(path: Path) -> bool:
     return status.st_uid == os.getuid() and not status.st_mode & 0o022
 
 
+def is_sealed(path: Path) -> bool:
+    """Whether a library is the user's own and whole; raises OSError where it cannot be read."""
+    content = path.read_bytes()
+    return _is_ours(path) and hashlib.sha256(content[:-DIGEST_BYTES]).digest() == content[-DIGEST_BYTES:]
+
+
 def _load(path: Path, key: str) -> Kernel | None:
     """Return the kernel of a sealed library, or None where it is missing, damaged or not the user's own."""
     import casadi as ca
 
     try:
-        content = path.read_bytes()
-        if not _is_ours(path) or hashlib.sha256(content[:-DIGEST_BYTES]).digest() != content[-DIGEST_BYTES:]:
+        if not is_sealed(path):
             return None
         roles = [ca.external(_symbol(role, key), str(path)) for role in ROLES]
-        library = ctypes.CDLL(str(path))
     except (OSError, RuntimeError):
         return None
-    return _kernel(roles, library)
+    return _kernel(roles, compiled=True)
 
 
-def _kernel(functions: Sequence[Any], library: ctypes.CDLL | None) -> Kernel:
+def _kernel(functions: Sequence[Any], compiled: bool) -> Kernel:
     value, gradient, jacobian, curvature, squares = functions
-    return Kernel(value, gradient, jacobian, curvature, squares, library)
+    return Kernel(value, gradient, jacobian, curvature, squares, compiled)

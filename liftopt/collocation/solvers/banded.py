@@ -11,6 +11,7 @@ may give up where IPOPT goes on, and says so.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,12 +20,16 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from liftopt.collocation.dynamics import agent_functions, object_functions
+from liftopt.collocation.kernels import Say
+from liftopt.collocation.lanes import WideKernel, load_wide
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.scatter import Pattern, hessian_pattern, jacobian_pattern
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
+Index = npt.NDArray[np.int64]
 # The verification recomputes the error by Pinocchio: what the solver calls converged must stay so there.
 SAFETY = 0.5
 # A warm start is near the solution: this barrier parameter and this share of the room to the bounds keep it there.
@@ -49,8 +54,8 @@ class BandedOptions:
 class Banded:
     """The interior point on one problem; ``solve`` may be called from many starts."""
 
-    def __init__(self, problem: Problem, options: BandedOptions | None = None) -> None:
-        """Build the solver.
+    def __init__(self, problem: Problem, options: BandedOptions | None = None, say: Say | None = None) -> None:
+        """Build the solver; ``say`` hears of it when kernels must be compiled first.
 
         Raises:
             SolverError: the extension is not installed, or the problem does not have the form it takes.
@@ -60,9 +65,12 @@ class Banded:
         except ImportError as error:
             raise SolverError(f"the extension of the banded solver is missing ({error}): reinstall liftopt") from error
         self.problem, self.options = problem, options or BandedOptions()
-        compiled = all(part.kernel.compiled for part in problem.parts)
-        self._nlp = _kernel_nlp(_liftopt_banded, problem) if compiled else _callback_nlp(_liftopt_banded, problem)
-        self._compiled = compiled
+        self._parameters = problem.parameters.copy()
+        self._kernels = wide_kernels(problem, say)
+        if self._kernels:
+            self._nlp = _kernel_nlp(_liftopt_banded, problem, self._kernels)
+        else:
+            self._nlp = _callback_nlp(_liftopt_banded, problem, self._parameters)
         self._solver = _liftopt_banded.InteriorPoint(self._nlp, elimination_order(problem))
         self.details: dict[str, Any] = {}
 
@@ -109,8 +117,8 @@ class Banded:
         )
 
     def _set_parameters(self, problem: Problem) -> None:
-        if not self._compiled:
-            self._nlp_parameters[:] = problem.parameters
+        if not self._kernels:
+            self._parameters[:] = problem.parameters
             return
         for i, topology in enumerate(problem.team.topologies):
             kernel = np.concatenate([[problem.task.duration], topology.parameters])
@@ -123,83 +131,146 @@ def elimination_order(problem: Problem) -> list[list[int]]:
     return [row.tolist() for row in layout.force] + [row.tolist() for row in layout.control]
 
 
-def _kernel_nlp(module: Any, problem: Problem) -> Any:
-    parts, constraints, weights = problem.parts, problem.constraints, problem.mesh.weights
-    selects = [part.select for part in parts]
-    jacobian = jacobian_pattern(
-        [part.kernel.jacobian.sparsity_out(0) for part in parts],
-        selects, weights, constraints.combine, constraints.linear,
-    )  # fmt: skip
-    hessian = hessian_pattern([[part.kernel.curvature.sparsity_out(0)] for part in parts], selects, weights)
-    jacobian_rows, jacobian_scatter, jacobian_offset = _by_rows(jacobian)
-    hessian_rows, hessian_scatter, hessian_offset = _by_rows(hessian)
+def wide_kernels(problem: Problem, say: Say | None = None) -> list[WideKernel] | None:
+    """Return the kernels of a problem's parts for several knots at once, or None where they cannot be made."""
+    team = problem.team
+    builders = [agent_functions] * len(team.agents) + [object_functions]
+    return load_wide(list(zip(builders, team.topologies, strict=True)), say)
+
+
+def _kernel_nlp(module: Any, problem: Problem, kernels: list[WideKernel]) -> Any:
+    """Return the problem as the wide kernels evaluate it."""
+    parts, constraints, weights = [p.kernel for p in problem.parts], problem.constraints, problem.mesh.weights
+    selects, blocks = [p.select for p in problem.parts], [kernel.jacobian.sparsity_out(0) for kernel in parts]
+    triangles = [kernel.curvature.sparsity_out(0) for kernel in parts]
+    jacobian = jacobian_pattern(blocks, selects, weights, constraints.combine, constraints.linear)
+    hessian = hessian_pattern([[triangle] for triangle in triangles], selects, weights)
+    lanes, knots = kernels[0].lanes, len(weights)
+    outputs, slopes, curvatures = (
+        interleaved(sizes, knots, lanes)
+        for sizes in ([k.n_c for k in parts], [b.nnz() for b in blocks], [t.nnz() for t in triangles])
+    )
+    # The pattern has each part's diagonal after its curvatures, the extension all diagonals after all curvatures.
+    order, end = [], curvatures.end
+    for kernel, place in zip(parts, curvatures.places, strict=True):
+        order += [place, end + np.arange(kernel.n_y)]
+        end += kernel.n_y
+    jacobian_rows, jacobian_map = _by_rows(jacobian)
+    hessian_rows, hessian_map = _by_rows(hessian)
     return module.KernelNlp(
-        parts=_parts(problem),
+        lanes=lanes,
+        parts=[_part(problem, i, kernels[i], outputs) for i in range(len(parts))],
         weights=weights,
-        combine=_arrays(constraints.combine),
+        combine=_arrays(_move_columns(constraints.combine, np.concatenate(outputs.places), outputs.end)),
         linear=_arrays(constraints.linear),
         jacobian=jacobian_rows,
-        jacobian_scatter=jacobian_scatter,
-        jacobian_offset=jacobian_offset,
+        jacobian_scatter=_arrays(_move_columns(jacobian_map[0], np.concatenate(slopes.places), slopes.end)),
+        jacobian_offset=jacobian_map[1],
         hessian=hessian_rows,
-        hessian_scatter=hessian_scatter,
-        hessian_offset=hessian_offset,
+        hessian_scatter=_arrays(_move_columns(hessian_map[0], np.concatenate(order), end)),
+        hessian_offset=hessian_map[1],
     )
 
 
-def _parts(problem: Problem) -> list[dict[str, Any]]:
-    """Return what the extension takes of each agent and of the object."""
-    constraints, knots = problem.constraints, len(problem.mesh.weights)
-    combine, by_output = sp.csr_matrix(constraints.combine), sp.csc_matrix(constraints.combine)
-    lonely = (np.diff(combine.indptr) == 1) & (np.diff(sp.csr_matrix(constraints.linear).indptr) == 0)
-    described, first = [], 0
-    for part in problem.parts:
-        kernel = part.kernel
-        rows, factors = [], []
-        for k in range(knots):
-            for j in range(kernel.n_squared):
-                output = first + k * kernel.n_c + j
-                entries = slice(by_output.indptr[output], by_output.indptr[output + 1])
-                own = lonely[by_output.indices[entries]]
-                if not own.any():
-                    raise SolverError("a squared output has no constraint row of its own to be condensed with")
-                rows.append(by_output.indices[entries][own][0])
-                factors.append(by_output.data[entries][own][0])
-        first += knots * kernel.n_c
-        calls = {role: _call(kernel, role) for role in ("value", "jacobian", "curvature")}
-        described.append(
-            calls
-            | dict(
-                n_y=kernel.n_y,
-                n_c=kernel.n_c,
-                jacobian_nonzeros=kernel.jacobian.nnz_out(0),
-                curvature_nonzeros=kernel.curvature.nnz_out(0),
-                select=_arrays(part.select),
-                squared_rows=np.array(rows, dtype=np.int32),
-                squared_factors=np.array(factors),
-            )
-        )
-    return described
+@dataclass(frozen=True)
+class Interleaved:
+    """Where entries are that wide kernels hold.
+
+    Attributes:
+        places: of each part, (K n,): where entry j of knot k is, at index ``k n + j``.
+        end: after the last of them.
+    """
+
+    places: list[Index]
+    end: int
 
 
-def _call(kernel: Any, role: str) -> tuple[int, int, int, int, int]:
-    function = getattr(kernel, role)
-    return kernel.address(role), function.sz_arg(), function.sz_res(), function.sz_iw(), function.sz_w()
+def interleaved(sizes: Sequence[int], knots: int, lanes: int) -> Interleaved:
+    """Return the places of ``sizes`` entries a knot, part after part; see ``kernel_nlp.hpp``."""
+    groups, end, places = -(-knots // lanes), 0, []
+    for n in sizes:
+        knot, entry = np.divmod(np.arange(knots * n), max(1, n))
+        places.append(end + (knot // lanes * n + entry) * lanes + knot % lanes)
+        end += groups * lanes * n
+    return Interleaved(places, end)
 
 
-def _callback_nlp(module: Any, problem: Problem) -> Any:
-    """Return the problem as CasADi's virtual machine evaluates it."""
-    raise SolverError("todo")
+def _part(problem: Problem, part: int, wide: WideKernel, outputs: Interleaved) -> dict[str, Any]:
+    """Return what the extension takes of an agent or of the object."""
+    kernel, select, knots = problem.parts[part].kernel, problem.parts[part].select, len(problem.mesh.weights)
+    y = interleaved([kernel.n_y], knots, wide.lanes)
+    squared = interleaved([kernel.n_squared], knots, wide.lanes)
+    rows, factors = np.full(squared.end, -1, dtype=np.int32), np.ones(squared.end)
+    first = knots * sum(p.kernel.n_c for p in problem.parts[:part])
+    for k in range(knots):
+        for j in range(kernel.n_squared):
+            at = squared.places[0][k * kernel.n_squared + j]
+            rows[at], factors[at] = _own_row(problem, first + k * kernel.n_c + j)
+    return dict(
+        value=wide.value,
+        derivatives=wide.derivatives,
+        n_y=kernel.n_y,
+        n_c=kernel.n_c,
+        n_p=kernel.n_p,
+        jacobian_nonzeros=kernel.jacobian.nnz_out(0),
+        curvature_nonzeros=kernel.curvature.nnz_out(0),
+        select=_arrays(_move_columns(select.T, y.places[0], y.end).T),
+        squared_rows=rows,
+        squared_factors=factors,
+    )
 
 
-def _by_rows(pattern: Pattern) -> tuple[Any, Any, Array]:
-    """Return a pattern's rows and the map to its nonzeros in the order of compressed rows."""
-    numbered = pattern.shape.copy()
-    numbered.data = np.arange(1.0, numbered.nnz + 1)
+def _own_row(problem: Problem, output: int) -> tuple[int, float]:
+    """Return the row of g that is a multiple of one output, and that multiple."""
+    combine, linear = problem.constraints.combine, problem.constraints.linear
+    for entry in range(combine.indptr[output], combine.indptr[output + 1]):
+        row = int(combine.indices[entry])
+        if combine.getrow(row).nnz == 1 and linear.getrow(row).nnz == 0:
+            return row, float(combine.data[entry])
+    raise SolverError("a squared output has no constraint row of its own to be condensed with")
+
+
+def _move_columns(matrix: Any, places: Index, size: int) -> sp.csr_matrix:
+    entries = sp.coo_matrix(matrix)
+    return sp.csr_matrix((entries.data, (entries.row, places[entries.col])), shape=(matrix.shape[0], size))
+
+
+def _callback_nlp(module: Any, problem: Problem, parameters: Array) -> Any:
+    """Return the problem as CasADi's virtual machine evaluates it, at parameters that may change in place."""
+    nlp = problem.nlp
+    values = ca.Function("values", [nlp.x, nlp.p], [nlp.f, nlp.g])
+    jacobian, jacobian_order = _row_order(nlp.jac_g.sparsity_out(1))
+    hessian, hessian_order = _row_order(nlp.hess_lag.sparsity_out(0))
+
+    def evaluate(x: Array) -> tuple[float, Array]:
+        f, g = values(x, parameters)
+        return float(f), g.full().ravel()
+
+    def differentiate(x: Array, multipliers: Array, scale: float) -> tuple[Array, Array, Array]:
+        gradient = nlp.grad_f(x, parameters)[1].full().ravel()
+        slopes = np.array(nlp.jac_g(x, parameters)[1].nonzeros())
+        curvatures = np.array(nlp.hess_lag(x, parameters, scale, multipliers).nonzeros())
+        return scale * gradient, slopes[jacobian_order], curvatures[hessian_order]
+
+    return module.CallbackNlp(evaluate=evaluate, differentiate=differentiate, jacobian=jacobian, hessian=hessian)
+
+
+def _row_order(sparsity: Any) -> tuple[Any, npt.NDArray[np.int64]]:
+    """Return a CasADi pattern in compressed rows, and where each of its entries is in compressed columns."""
+    start, index, count = sparsity.colind(), sparsity.row(), sparsity.nnz()
+    rows = sp.csr_matrix(sp.csc_matrix((np.arange(count, dtype=float), index, start), shape=sparsity.shape))
+    rows.sort_indices()
+    return _arrays(rows), rows.data.astype(np.int64)
+
+
+def _by_rows(pattern: Pattern) -> tuple[Any, tuple[sp.csr_matrix, Array]]:
+    """Return a pattern's rows, and the map to its nonzeros and its constant part in the order of compressed rows."""
+    numbered = sp.csc_matrix((np.arange(pattern.shape.nnz, dtype=float), pattern.shape.indices, pattern.shape.indptr),
+                             shape=pattern.shape.shape)  # fmt: skip
     rows = sp.csr_matrix(numbered)
     rows.sort_indices()
-    order = rows.data.astype(np.int64) - 1
-    return _arrays(rows), _arrays(sp.csr_matrix(pattern.scatter)[order]), pattern.offset[order]
+    order = rows.data.astype(np.int64)
+    return _arrays(rows), (sp.csr_matrix(pattern.scatter)[order], pattern.offset[order])
 
 
 def _arrays(matrix: Any) -> tuple[int, int, npt.NDArray[np.int32], npt.NDArray[np.int32], Array]:
