@@ -15,8 +15,9 @@ from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.screen import screen, too_fast
+from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
-from liftopt.collocation.solvers.result import Multipliers, SolverResult
+from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.scenario import Scenario
 from liftopt.scene import agents_of, object_of, task_of
@@ -99,6 +100,10 @@ class _Search:
         self.scenario, self.team, self.spline, self.deadline, self.say = scenario, team, spline, deadline, say
         self.problem = Problem(team, task_of(scenario), spline.mesh())
         self.solver = Ipopt(self.problem, IpoptOptions(tolerance=scenario.solver.tolerance))
+        # Tried first where the scenario asks for it; IPOPT takes over from every start it fails from.
+        self.quick = None
+        if scenario.solver.name == "banded":
+            self.quick = Banded(self.problem, BandedOptions(tolerance=scenario.solver.tolerance), say)
         self.records: list[StartRecord] = []
         self.prepared = time.monotonic()
 
@@ -173,8 +178,15 @@ class _Search:
         self.say(f"solving on {self.spline.intervals} intervals: {start.name} ({len(self.records) + 1} of {of})")
         now = time.monotonic()
         until = self.deadline if of == 1 else now + START_SHARE * (self.deadline - now)
-        result = self.solver.solve(start.x, deadline=until)
-        status = "converged" if result.converged else result.status
+        result, before = None, ""
+        if self.quick is not None:
+            result = self.quick.solve(start.x, deadline=until)
+            if not result.converged and result.status != STOPPED:
+                self.say(f"the banded solver stopped ({result.status}): IPOPT takes over")
+                result, before = None, f" (IPOPT, after banded: {result.status})"
+        if result is None:
+            result = self.solver.solve(start.x, deadline=until)
+        status = ("converged" if result.converged else result.status) + before
         self.records.append(StartRecord(start.name, status, result.objective, result.iterations, result.seconds))
         return result
 
@@ -183,7 +195,7 @@ class _Search:
         verification = verify(self.problem, self.spline, result, self.scenario.solver.tolerance)
         outcome = SOLVED
         if not result.converged:
-            late = result.status == "User_Requested_Stop"
+            late = result.status == STOPPED
             why = f"time limit of {self.scenario.solver.time_limit:g} s reached" if late else f"IPOPT: {result.status}"
             outcome = f"not converged ({why}): {verification.describe_failure()}"
         return _Candidate(start, result, verification, outcome)

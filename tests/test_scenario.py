@@ -49,7 +49,14 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "max_grasp_force": 200.0,
             "balance_tolerance": 0.0,
         },
-        "solver": {"intervals": 20, "starts": 4, "tolerance": 1e-6, "seed": 0, "time_limit": 50.0},
+        "solver": {
+            "name": "ipopt",
+            "intervals": 20,
+            "starts": 4,
+            "tolerance": 1e-6,
+            "seed": 0,
+            "time_limit": 50.0,
+        },
     }
 
 

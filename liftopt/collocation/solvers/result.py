@@ -11,6 +11,8 @@ import numpy.typing as npt
 from liftopt.collocation.problem import Problem
 
 Array = npt.NDArray[np.float64]
+# Every solver's word for having reached its deadline.
+STOPPED = "User_Requested_Stop"
 
 
 @dataclass(frozen=True)
