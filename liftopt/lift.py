@@ -178,13 +178,10 @@ class _Search:
         self.say(f"solving on {self.spline.intervals} intervals: {start.name} ({len(self.records) + 1} of {of})")
         now = time.monotonic()
         until = self.deadline if of == 1 else now + START_SHARE * (self.deadline - now)
-        result, before = None, ""
-        if self.quick is not None:
-            result = self.quick.solve(start.x, deadline=until)
-            if not result.converged and result.status != STOPPED:
-                self.say(f"the banded solver stopped ({result.status}): IPOPT takes over")
-                result, before = None, f" (IPOPT, after banded: {result.status})"
-        if result is None:
+        result, before = (self.quick or self.solver).solve(start.x, deadline=until), ""
+        if self.quick is not None and not result.converged and result.status != STOPPED:
+            self.say(f"the banded solver stopped ({result.status}): IPOPT takes over")
+            before = f" (IPOPT, after banded: {result.status})"
             result = self.solver.solve(start.x, deadline=until)
         status = ("converged" if result.converged else result.status) + before
         self.records.append(StartRecord(start.name, status, result.objective, result.iterations, result.seconds))

@@ -75,20 +75,18 @@ int BlockCholesky::at(int row, int column) const {
   return find(low.first, high.first) + high.second * stored(low.first) + low.second;
 }
 
-void BlockCholesky::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
-
-void BlockCholesky::isolate(int unknown) {
+void BlockCholesky::isolate(int unknown, double* values) const {
   const auto [block, place] = position_[unknown];
   const int n = stored(block);
-  double* own = values_.data() + diagonal_[block];
+  double* own = values + diagonal_[block];
   for (int i = 0; i < n; ++i) own[place * n + i] = own[i * n + place] = 0.0;
   own[place * n + place] = 1.0;
   for (const Below& below : below_[block])
-    std::fill_n(values_.data() + below.offset + place * stored(below.block), stored(below.block), 0.0);
+    std::fill_n(values + below.offset + place * stored(below.block), stored(below.block), 0.0);
   for (int j = 0; j < block; ++j)
     for (const Below& below : below_[j])
       if (below.block == block)
-        for (std::size_t i = 0; i < blocks_[j].size(); ++i) values_[below.offset + i * n + place] = 0.0;
+        for (std::size_t i = 0; i < blocks_[j].size(); ++i) values[below.offset + i * n + place] = 0.0;
 }
 
 bool BlockCholesky::factorise() {
@@ -107,8 +105,9 @@ bool BlockCholesky::factorise() {
     for (std::size_t k = 0; k < below_[j].size(); ++k)
       for (std::size_t i = k; i < below_[j].size(); ++i) {
         const int rows = stored(below_[j][i].block), columns = stored(below_[j][k].block);
-        dense_.multiply_add(values_.data() + updates_[update++], rows, values_.data() + below_[j][i].offset, rows,
-                            values_.data() + below_[j][k].offset, columns, rows, columns, n, -1.0);
+        double* target = values_.data() + updates_[update++];
+        const double *left = values_.data() + below_[j][i].offset, *right = values_.data() + below_[j][k].offset;
+        dense_.multiply_add(target, rows, left, rows, right, columns, rows, columns, n, -1.0);
       }
   }
   return true;

@@ -24,11 +24,13 @@ class BlockCholesky {
 
   // Where the entry (row, column) is stored: once, in the lower triangle by the order of elimination.
   int at(int row, int column) const;
+  // Whether one unknown is eliminated before another.
+  bool before(int one, int other) const { return position_[one] < position_[other]; }
   double* values() { return values_.data(); }
-  void clear();
+  std::size_t storage() const { return values_.size(); }
 
-  // Make the row and column of an unknown those of the identity.
-  void isolate(int unknown);
+  // Make the row and column of an unknown those of the identity, in a matrix stored as this one is.
+  void isolate(int unknown, double* values) const;
 
   // Factorise in place; false where the matrix is not positive definite.
   bool factorise();

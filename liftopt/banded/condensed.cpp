@@ -60,26 +60,38 @@ std::vector<std::pair<int, int>> coupled_blocks(const Sparse& hessian, const std
   return {coupled.begin(), coupled.end()};
 }
 
+void extend(std::vector<Run>& runs, int from, int to) {
+  if (!runs.empty() && runs.back().from + runs.back().length == from && runs.back().to + runs.back().length == to)
+    ++runs.back().length;
+  else
+    runs.push_back({from, to, 1});
+}
+
 }  // namespace
 
 Condensed::Condensed(const Sparse& hessian, const Sparse& jacobian, std::vector<std::vector<int>> blocks)
     : cholesky_(blocks, coupled_blocks(hessian, group_rows(jacobian), blocks)) {
+  matrix_.resize(cholesky_.storage());
   for (int r = 0; r < hessian.rows; ++r) {
-    diagonal_target_.push_back(cholesky_.at(r, r));
+    diagonal_.push_back(cholesky_.at(r, r));
     for (int k = hessian.start[r]; k < hessian.start[r + 1]; ++k)
-      hessian_target_.push_back(cholesky_.at(r, hessian.index[k]));
+      extend(hessian_runs_, k, cholesky_.at(r, hessian.index[k]));
   }
   int largest = 0, tallest = 0;
   for (const Group& group : group_rows(jacobian)) {
     Element element{group.first, group.last, static_cast<int>(group.columns.size()), {}, {}};
+    // In the order in which K stores them, so that runs are long.
+    std::vector<int> columns = group.columns;
+    std::sort(columns.begin(), columns.end(), [&](int a, int b) { return cholesky_.before(a, b); });
     for (int k = jacobian.start[group.first]; k < jacobian.start[group.last]; ++k) {
-      const auto found = std::lower_bound(group.columns.begin(), group.columns.end(), jacobian.index[k]);
-      element.place.push_back(static_cast<int>(found - group.columns.begin()));
+      const auto found = std::find(columns.begin(), columns.end(), jacobian.index[k]);
+      element.place.push_back(static_cast<int>(found - columns.begin()));
     }
+    const int ld = padded(element.columns);
     for (int c = 0; c < element.columns; ++c)
       for (int r = c; r < element.columns; ++r)
-        element.target.push_back(cholesky_.at(group.columns[r], group.columns[c]));
-    largest = std::max(largest, padded(element.columns));
+        extend(element.runs, c * ld + r, cholesky_.at(columns[r], columns[c]));
+    largest = std::max(largest, ld);
     tallest = std::max(tallest, group.last - group.first);
     elements_.push_back(std::move(element));
   }
@@ -90,51 +102,54 @@ Condensed::Condensed(const Sparse& hessian, const Sparse& jacobian, std::vector<
 
 void Condensed::assemble(const Sparse& hessian, const Sparse& jacobian, const double* d, const double* s,
                          const std::vector<int>& held) {
-  cholesky_.clear();
-  double* values = cholesky_.values();
-  for (int k = 0; k < hessian.nonzeros(); ++k) values[hessian_target_[k]] += hessian.value[k];
-  for (std::size_t i = 0; i < diagonal_target_.size(); ++i) values[diagonal_target_[i]] += s[i];
+  std::fill(matrix_.begin(), matrix_.end(), 0.0);
+  add(hessian_runs_, hessian.value.data(), matrix_.data());
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) matrix_[diagonal_[i]] += s[i];
   for (const Element& element : elements_) {
-    const int rows = element.last_row - element.first_row;
-    if (rows * element.columns < kWorthwhile)
-      add_sparse(element, jacobian, d);
-    else
-      add_dense(element, jacobian, d);
+    const int rows = element.last_row - element.first_row, ld = padded(element.columns);
+    fill_rows(element, jacobian, d);
+    if (rows * element.columns < kWorthwhile) {
+      multiply_small(element);
+    } else {
+      std::fill_n(product_.data(), ld * ld, 0.0);
+      dense_operations().multiply_add_lower(product_.data(), ld, weighted_.data(), ld, dense_.data(), ld, ld, rows);
+    }
+    add(element.runs, product_.data(), matrix_.data());
   }
-  for (int unknown : held) cholesky_.isolate(unknown);
+  for (int unknown : held) cholesky_.isolate(unknown, matrix_.data());
 }
 
-void Condensed::add_sparse(const Element& element, const Sparse& jacobian, const double* d) {
-  double* values = cholesky_.values();
-  int k = 0;
-  for (int r = element.first_row; r < element.last_row; ++r) {
-    double* row = dense_.data();
-    std::fill_n(row, element.columns, 0.0);
-    for (int e = jacobian.start[r]; e < jacobian.start[r + 1]; ++e) row[element.place[k++]] = jacobian.value[e];
-    int entry = 0;
-    for (int c = 0; c < element.columns; ++c)
-      for (int i = c; i < element.columns; ++i) values[element.target[entry++]] += d[r] * row[c] * row[i];
-  }
+bool Condensed::factorise(double delta) {
+  std::copy(matrix_.begin(), matrix_.end(), cholesky_.values());
+  for (int i : diagonal_) cholesky_.values()[i] += delta;
+  return cholesky_.factorise();
 }
 
-void Condensed::add_dense(const Element& element, const Sparse& jacobian, const double* d) {
-  const int rows = element.last_row - element.first_row, ld = padded(element.columns);
+void Condensed::fill_rows(const Element& element, const Sparse& jacobian, const double* d) {
+  const int ld = padded(element.columns), first = element.first_row, rows = element.last_row - first;
   std::fill_n(dense_.data(), rows * ld, 0.0);
-  std::fill_n(product_.data(), ld * ld, 0.0);
-  int k = 0;
-  for (int r = 0; r < rows; ++r) {
-    double *row = dense_.data() + r * ld, *weighted = weighted_.data() + r * ld;
-    const int at = element.first_row + r;
-    for (int e = jacobian.start[at]; e < jacobian.start[at + 1]; ++e) row[element.place[k++]] = jacobian.value[e];
-    for (int i = 0; i < ld; ++i) weighted[i] = d[at] * row[i];
-  }
-  dense_operations().multiply_add(product_.data(), ld, weighted_.data(), ld, dense_.data(), ld, ld, ld, rows, 1.0);
-  double* values = cholesky_.values();
-  const int* target = element.target.data();
-  for (int c = 0; c < element.columns; ++c) {
-    const double* column = product_.data() + c * ld;
-    for (int i = c; i < element.columns; ++i) values[*target++] += column[i];
-  }
+  std::fill_n(weighted_.data(), rows * ld, 0.0);
+  const int* place = element.place.data();
+  for (int r = 0; r < rows; ++r)
+    for (int k = jacobian.start[first + r]; k < jacobian.start[first + r + 1]; ++k, ++place) {
+      dense_[r * ld + *place] = jacobian.value[k];
+      weighted_[r * ld + *place] = d[first + r] * jacobian.value[k];
+    }
+}
+
+void Condensed::multiply_small(const Element& element) {
+  const int ld = padded(element.columns), rows = element.last_row - element.first_row;
+  for (int c = 0; c < element.columns; ++c)
+    for (int i = c; i < element.columns; ++i) {
+      double sum = 0.0;
+      for (int r = 0; r < rows; ++r) sum += weighted_[r * ld + c] * dense_[r * ld + i];
+      product_[c * ld + i] = sum;
+    }
+}
+
+void Condensed::add(const std::vector<Run>& runs, const double* from, double* to) {
+  for (const Run& run : runs)
+    for (int i = 0; i < run.length; ++i) to[run.to + i] += from[run.from + i];
 }
 
 }  // namespace banded

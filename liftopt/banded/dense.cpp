@@ -46,6 +46,18 @@ LIFTOPT_INLINE void multiply_add(double* c, int ldc, const double* a, int lda, c
   }
 }
 
+template <int Width>
+LIFTOPT_INLINE void multiply_add_lower(double* c, int ldc, const double* a, int lda, const double* b, int ldb,
+                                       int rows, int depth) {
+  for (int j = 0; j < rows; j += Width) {
+    double* cj = c + static_cast<long>(ldc) * j;
+    int i = j / kLanes * kLanes;
+    for (; i + 2 * kLanes <= rows && Width == kLanes; i += 2 * kLanes)
+      multiply_tile<2, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, 1.0);
+    for (; i < rows; i += kLanes) multiply_tile<1, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, 1.0);
+  }
+}
+
 LIFTOPT_INLINE bool factorise(double* a, int ld, int n, double* inverse, double threshold) {
   const int lanes = ld / kLanes;
   for (int j = 0; j < n; ++j) {
@@ -110,6 +122,10 @@ LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int
                            int columns, int depth, double sign) {                                                   \
     banded::multiply_add<TALL, WIDTH>(c, ldc, a, lda, b, ldb, rows, columns, depth, sign);                          \
   }                                                                                                                 \
+  TARGET void multiply_add_lower(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,  \
+                                 int depth) {                                                                       \
+    banded::multiply_add_lower<WIDTH>(c, ldc, a, lda, b, ldb, rows, depth);                                         \
+  }                                                                                                                 \
   TARGET bool factorise(double* a, int ld, int n, double* inverse, double threshold) {                              \
     return banded::factorise(a, ld, n, inverse, threshold);                                                         \
   }                                                                                                                 \
@@ -121,7 +137,8 @@ LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int
                                   double sign) {                                                                    \
     banded::multiply_transposed(y, a, lda, rows, columns, x, sign);                                                 \
   }                                                                                                                 \
-  const DenseOperations all = {#NAME, multiply_add, factorise, multiply_vector, multiply_transposed};               \
+  const DenseOperations all = {#NAME,    multiply_add,    multiply_add_lower, factorise, multiply_vector,         \
+                                multiply_transposed};                                                               \
   }
 
 LIFTOPT_VARIANT(portable, , 1, 2)

@@ -16,6 +16,10 @@ struct DenseOperations {
   void (*multiply_add)(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows, int columns,
                        int depth, double sign);
 
+  // The lower triangle of C (rows x rows) += A B^T; above it, anything.
+  void (*multiply_add_lower)(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,
+                             int depth);
+
   // A = L L^T in place on the lower triangle of A (n x n, columns ld apart), and L^-1; false where A is not positive
   // definite by more than rounding: a pivot must exceed `threshold`.
   bool (*factorise)(double* a, int ld, int n, double* inverse, double threshold);

@@ -26,7 +26,7 @@ double largest(const Vector& v) {
 
 Newton::Newton(const Nlp& nlp, std::vector<std::vector<int>> blocks)
     : dx(nlp.unknowns()), j_dx(nlp.rows()), dlambda(nlp.rows()), nlp_(nlp),
-      condensed_(nlp.hessian, nlp.jacobian, std::move(blocks)), row_weight_(nlp.rows()), diagonal_(nlp.unknowns()),
+      condensed_(nlp.hessian, nlp.jacobian, std::move(blocks)), row_weight_(nlp.rows()),
       sigma_rows_(nlp.rows()), sigma_x_(nlp.unknowns()), step_(nlp.unknowns()), rows_(nlp.rows()),
       residual_(nlp.unknowns()), row_residual_(nlp.rows()) {}
 
@@ -38,14 +38,10 @@ void Newton::begin(const std::vector<char>& equality, const std::vector<int>& he
   assembly_seconds = factorisation_seconds = 0.0;
 }
 
-bool Newton::try_delta(const double* sigma_x) {
-  double now = seconds_now();
-  for (int i = 0; i < nlp_.unknowns(); ++i) diagonal_[i] = sigma_x[i] + delta_;
-  condensed_.assemble(nlp_.hessian, nlp_.jacobian, row_weight_.data(), diagonal_.data(), held_);
-  double then = seconds_now();
-  assembly_seconds += then - now;
-  const bool done = condensed_.factorise();
-  factorisation_seconds += seconds_now() - then;
+bool Newton::try_delta() {
+  const double began = seconds_now();
+  const bool done = condensed_.factorise(delta_);
+  factorisation_seconds += seconds_now() - began;
   ++factorisations;
   return done;
 }
@@ -56,14 +52,17 @@ bool Newton::factorise(const double* sigma_x, const double* sigma_s, double leas
     row_weight_[r] = sigma_rows_[r] + (equality_[r] ? kPenalty : 0.0);
   }
   std::copy_n(sigma_x, nlp_.unknowns(), sigma_x_.begin());
+  const double began = seconds_now();
+  condensed_.assemble(nlp_.hessian, nlp_.jacobian, row_weight_.data(), sigma_x, held_);
+  assembly_seconds += seconds_now() - began;
   delta_ = least_delta;
-  if (try_delta(sigma_x)) {
+  if (try_delta()) {
     if (delta_ > 0.0) last_delta_ = delta_;
     return true;
   }
   const bool first = last_delta_ == 0.0;
   delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
-  while (!try_delta(sigma_x)) {
+  while (!try_delta()) {
     delta_ *= first ? kFirstGrowth : kGrowth;
     if (!(delta_ < kLargestDelta)) return false;
   }

@@ -42,14 +42,14 @@ class Newton {
 
  private:
   void correct(const double* r, const double* c);
-  bool try_delta(const double* sigma_x);
+  bool try_delta();
 
   const Nlp& nlp_;
   Condensed condensed_;
   std::vector<char> equality_;
   std::vector<int> held_;
   double delta_ = 0.0, last_delta_ = 0.0;
-  Vector row_weight_, diagonal_;  // of the matrix that was factorised
+  Vector row_weight_;             // of the matrix that was factorised
   Vector sigma_rows_, sigma_x_;   // of the matrix without the penalty
   Vector step_, rows_, residual_, row_residual_;
 };

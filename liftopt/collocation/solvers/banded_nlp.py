@@ -1,4 +1,4 @@
-"""A lift as the extension ``_liftopt_banded`` takes it: from wide kernels, or called back through Python without them."""
+"""A lift as the extension ``_liftopt_banded`` takes it: from wide kernels, or through Python without them."""
 
 from __future__ import annotations
 

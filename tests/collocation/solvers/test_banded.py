@@ -33,6 +33,7 @@ class Banded:
     start: np.ndarray
 
     def nlp(self) -> Nlp:
+        """Return it with exact derivatives by CasADi."""
         p, sigma, lam = ca.SX.sym("p", 0), ca.SX.sym("s"), ca.SX.sym("l", self.g.shape[0])
         gradient = ca.densify(ca.gradient(self.f, self.x))
         hessian = ca.triu(ca.hessian(sigma * self.f + ca.dot(lam, self.g), self.x)[0])
@@ -44,12 +45,14 @@ class Banded:
         )  # fmt: skip
 
     def solve(self, **options: Any) -> dict[str, Any]:
+        """Solve it by the interior point under test."""
         solver = extension.InteriorPoint(callback_nlp(extension, self.nlp(), np.zeros(0)), self.blocks)
         arguments = dict(lower_x=self.lower, upper_x=self.upper, lower_g=self.lower_g, upper_g=self.upper_g)
         found: dict[str, Any] = solver.solve(**arguments, **dict(x0=self.start, objective_scaling=1.0) | options)
         return found
 
-    def ipopt(self, x0: np.ndarray, warm: dict[str, Any] | None = None) -> dict[str, np.ndarray]:
+    def ipopt(self, x0: np.ndarray, warm: dict[str, Any] | None = None) -> dict[str, Any]:
+        """Solve it by IPOPT."""
         options: dict[str, Any] = dict(print_level=0, sb="yes", tol=1e-9, bound_relax_factor=0.0)
         extra = {}
         if warm:
@@ -119,7 +122,7 @@ def test_convex_problems_have_ipopts_solution(seed: int) -> None:
 def test_nonconvex_problems_end_where_ipopt_stays(seed: int) -> None:
     """Started from the point and its multipliers, IPOPT finds nothing better near it: a minimum, not a saddle."""
     problem = random_problem(seed, convex=False)
-    found = problem.solve()
+    found = problem.solve(tolerance=0.01 * TOLERANCE)  # a hundred products of TOLERANCE would show in the objective
     assert found["status"] == "Solve_Succeeded" and problem.kkt(found) <= TOLERANCE
     polished = problem.ipopt(found["x"], warm=found)
     np.testing.assert_allclose(polished["f"], found["objective"], rtol=1e-6)
@@ -198,7 +201,7 @@ def test_limits_and_bad_numbers_are_reported() -> None:
 def test_misshapen_input_is_refused() -> None:
     problem = random_problem(0, convex=True)
     with pytest.raises(ValueError, match="every unknown once"):
-        extension.InteriorPoint(callback_nlp(extension, problem.nlp(), np.zeros(0)), problem.blocks[:-1] + [[0]])
+        extension.InteriorPoint(callback_nlp(extension, problem.nlp(), np.zeros(0)), [*problem.blocks[:-1], [0]])
     problem.lower = problem.lower[:-1]
     with pytest.raises(ValueError, match="size"):
         problem.solve()
