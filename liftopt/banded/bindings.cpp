@@ -64,8 +64,8 @@ std::unique_ptr<banded::KernelNlp> kernel_nlp(int lanes, const std::vector<py::d
   for (const py::dict& part : parts) all.push_back(part_of(part));
   return std::make_unique<banded::KernelNlp>(
       lanes, std::move(all), vector_of(weights), sparse_of(combine), sparse_of(linear), sparse_of(jacobian),
-      banded::Scatter{sparse_of(jacobian_scatter), vector_of(jacobian_offset)}, sparse_of(hessian),
-      banded::Scatter{sparse_of(hessian_scatter), vector_of(hessian_offset)});
+      banded::Scatter{banded::Sliced(sparse_of(jacobian_scatter)), vector_of(jacobian_offset)}, sparse_of(hessian),
+      banded::Scatter{banded::Sliced(sparse_of(hessian_scatter)), vector_of(hessian_offset)});
 }
 
 const char* name_of(banded::Status status) {

@@ -92,6 +92,16 @@ LIFTOPT_INLINE bool factorise(double* a, int ld, int n, double* inverse, double 
   return true;
 }
 
+LIFTOPT_INLINE void gather(double* sums, const double* values, const int* indices, int count, const double* x) {
+  Lane sum{};
+  for (int e = 0; e < count; ++e, indices += kLanes) {
+    const Lane at = {x[indices[0]], x[indices[1]], x[indices[2]], x[indices[3]],
+                     x[indices[4]], x[indices[5]], x[indices[6]], x[indices[7]]};
+    sum += at * reinterpret_cast<const Lane*>(values)[e];
+  }
+  *reinterpret_cast<Lane*>(sums) = sum;
+}
+
 LIFTOPT_INLINE void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,
                                     double sign) {
   Lane* to = reinterpret_cast<Lane*>(y);
@@ -129,6 +139,9 @@ LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int
   TARGET bool factorise(double* a, int ld, int n, double* inverse, double threshold) {                              \
     return banded::factorise(a, ld, n, inverse, threshold);                                                         \
   }                                                                                                                 \
+  TARGET void gather(double* sums, const double* values, const int* indices, int count, const double* x) {          \
+    banded::gather(sums, values, indices, count, x);                                                                \
+  }                                                                                                                 \
   TARGET void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,          \
                               double sign) {                                                                        \
     banded::multiply_vector(y, a, lda, rows, columns, x, sign);                                                     \
@@ -137,8 +150,8 @@ LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int
                                   double sign) {                                                                    \
     banded::multiply_transposed(y, a, lda, rows, columns, x, sign);                                                 \
   }                                                                                                                 \
-  const DenseOperations all = {#NAME,    multiply_add,    multiply_add_lower, factorise, multiply_vector,         \
-                                multiply_transposed};                                                               \
+  const DenseOperations all = {#NAME,  multiply_add,    multiply_add_lower, factorise,                               \
+                               gather, multiply_vector, multiply_transposed};                                       \
   }
 
 LIFTOPT_VARIANT(portable, , 1, 2)

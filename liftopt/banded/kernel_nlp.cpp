@@ -28,7 +28,7 @@ KernelNlp::KernelNlp(int lanes, std::vector<KernelPart> parts, const Vector& wei
     curvatures += part.curvature_nonzeros * knots + part.n_y;
     widest = std::max(widest, part.select.rows);
   }
-  if (jacobian_scatter_.map.columns != slopes || hessian_scatter_.map.columns != curvatures ||
+  if (jacobian_scatter_.map.columns() != slopes || hessian_scatter_.map.columns() != curvatures ||
       combine_.columns != outputs)
     throw std::invalid_argument("the scatters do not fit the kernels");
   c_.resize(outputs);

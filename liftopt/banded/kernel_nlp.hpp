@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "nlp.hpp"
+#include "sliced.hpp"
 
 namespace banded {
 
@@ -32,7 +33,7 @@ struct KernelPart {
 
 // A linear map to the nonzeros of a matrix, with a constant part.
 struct Scatter {
-  Sparse map;
+  Sliced map;
   Vector offset;
   void apply(const Aligned& values, Vector& nonzeros) const {
     nonzeros = offset;

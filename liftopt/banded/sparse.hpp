@@ -17,9 +17,15 @@ struct Sparse {
   // y += A x
   void multiply(const double* x, double* y) const {
     for (int r = 0; r < rows; ++r) {
-      double sum = 0.0;
-      for (int k = start[r]; k < start[r + 1]; ++k) sum += value[k] * x[index[k]];
-      y[r] += sum;
+      // Two sums, since each addition waits for the one before.
+      double sum = 0.0, other = 0.0;
+      int k = start[r];
+      for (; k + 1 < start[r + 1]; k += 2) {
+        sum += value[k] * x[index[k]];
+        other += value[k + 1] * x[index[k + 1]];
+      }
+      if (k < start[r + 1]) sum += value[k] * x[index[k]];
+      y[r] += sum + other;
     }
   }
 
