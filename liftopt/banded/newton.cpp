@@ -14,7 +14,7 @@ constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;
 constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 1.0 / 3.0;
 constexpr int kMostRefinements = 5;
 // Residuals of the linear system at which refinement stops, relative to the right-hand side.
-constexpr double kDualResidual = 1e-8, kPrimalResidual = 1e-2;
+constexpr double kDualResidual = 1e-9, kPrimalResidual = 1e-2;
 
 double largest(const Vector& v) {
   double worst = 0.0;
@@ -108,7 +108,7 @@ void Newton::solve(const double* r, const double* c) {
     for (int i = 0; i < nlp_.unknowns(); ++i) residual_[i] = r[i] - residual_[i] - (sigma_x_[i] + delta_) * dx[i];
     for (int i : held_) residual_[i] = 0.0;
     const double dual = largest(residual_) / right;
-    const double primal = largest(row_residual_) / std::max(primal_right, 1e-6);
+    const double primal = largest(row_residual_) / std::max(primal_right, 1e-8);
     const double worst = std::max(dual / kDualResidual, primal / kPrimalResidual);
     if (worst < 1.0 || !(worst < 0.9 * before)) return;
     before = worst;

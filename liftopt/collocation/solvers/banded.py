@@ -27,7 +27,7 @@ Array = npt.NDArray[np.float64]
 # The verification recomputes the error by Pinocchio: what the solver calls converged must stay so there.
 SAFETY = 0.5
 # A warm start is near the solution: this barrier parameter and this share of the room to the bounds keep it there.
-WARM_MU, WARM_PUSH = 1e-4, 1e-5
+WARM_MU, WARM_PUSH = 1e-5, 1e-5
 
 
 @dataclass(frozen=True)
