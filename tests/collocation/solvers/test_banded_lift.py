@@ -1,0 +1,202 @@
+"""The interior point on lifts: Pinocchio in double precision and IPOPT judge what it returns."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.collocation.guess import PostureSolver, Start, blend, naive_start, seed_coordinates
+from liftopt.collocation.kkt import kkt_error
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.banded import Banded, BandedOptions, elimination_order
+from liftopt.collocation.solvers.banded_nlp import interleaved
+from liftopt.collocation.solvers.ipopt import Ipopt
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import LiftTask
+from liftopt.errors import SolverError
+from liftopt.lift import lift
+from liftopt.scenario import Scenario, load_scenario, shipped_scenarios, with_overrides
+from liftopt.scene import agents_of, object_of, task_of
+
+extension = pytest.importorskip("_liftopt_banded")
+TOLERANCE = 1e-6
+
+
+def soon() -> float:
+    return time.monotonic() + 60.0
+
+
+def problem_of(scenario: Scenario, intervals: int = 20) -> Problem:
+    team = Team.of(agents_of(scenario), object_of(scenario))
+    return Problem(team, task_of(scenario), RestToRestSpline(intervals).mesh())
+
+
+def posture_pair(problem: Problem) -> np.ndarray:
+    """Return one blend of static postures, the first that is found."""
+    postures, rng, task = PostureSolver(problem.team, problem.task), np.random.default_rng(0), problem.task
+    for attempt in range(8):
+        seed = seed_coordinates(problem, task.start, rng if attempt else None)
+        first = postures.solve(task.start, seed, soon())
+        last = first and postures.solve(task.end, first.coordinates, soon())
+        if first and last:
+            return blend(problem, first, last)
+    raise AssertionError("no posture pair")
+
+
+@pytest.fixture(scope="session")
+def banded(small_lift: Problem) -> Banded:
+    return Banded(small_lift)
+
+
+@pytest.fixture(scope="session")
+def found(banded: Banded, starts: list[Start]) -> SolverResult:
+    return banded.solve(starts[0].x, deadline=soon())
+
+
+def test_small_lift_is_solved(found: SolverResult, small_lift: Problem, solved: SolverResult) -> None:
+    """KKT error and objective by Pinocchio; IPOPT from the same start is the yardstick of the objective."""
+    assert found.converged and found.status == "Solve_Succeeded" and 0 < found.iterations < 150
+    error = kkt_error(small_lift, found.x, found.multipliers)
+    assert error.error <= TOLERANCE
+    np.testing.assert_allclose(error.objective, found.objective, rtol=1e-12)
+    assert found.objective <= 1.05 * solved.objective
+    assert 0.0 < found.evaluation_seconds < found.seconds
+
+
+def test_ipopt_stays_at_its_solution(found: SolverResult, ipopt: Ipopt) -> None:
+    polished = ipopt.solve(found.x, deadline=soon(), warm=found.multipliers)
+    assert polished.converged and polished.iterations <= 8
+    np.testing.assert_allclose(polished.objective, found.objective, rtol=1e-6)
+    np.testing.assert_allclose(polished.x, found.x, rtol=0, atol=5e-3)  # newtons and radians
+
+
+def test_it_stays_at_ipopts_solution(banded: Banded, solved: SolverResult) -> None:
+    again = banded.solve(solved.x, deadline=soon(), warm=solved.multipliers)
+    assert again.converged and again.iterations <= 8
+    np.testing.assert_allclose(again.objective, solved.objective, rtol=1e-6)
+
+
+def test_warm_start_of_a_neighbouring_task(
+    banded: Banded, found: SolverResult, small_lift: Problem, make_task: Callable[..., LiftTask]
+) -> None:
+    task = make_task(agent_weights=(1.0, 1.0), duration=2.05)
+    other = replace(small_lift, task=replace(task, end=task.end - np.array([0.0, 0.0, 0.02, 0.0, 0.0, 0.0])))
+    warm = banded.solve(found.x, deadline=soon(), warm=found.multipliers, problem=other)
+    assert warm.converged and warm.iterations <= found.iterations / 2
+    assert kkt_error(other, warm.x, warm.multipliers).error <= TOLERANCE
+
+
+def test_a_problem_with_other_rows_is_refused(
+    banded: Banded, starts: list[Start], small_lift: Problem, make_task: Callable[..., LiftTask]
+) -> None:
+    other = replace(small_lift, task=make_task(agent_weights=(1.0, 1.0), max_grasp_force=50.0))
+    with pytest.raises(SolverError, match="other constraint rows"):
+        banded.solve(starts[0].x, deadline=soon(), problem=other)
+
+
+def test_limits_of_time_and_iterations_are_reported(small_lift: Problem, banded: Banded, starts: list[Start]) -> None:
+    late = banded.solve(starts[0].x, deadline=time.monotonic() - 1.0)
+    assert not late.converged and late.status == "User_Requested_Stop" and late.iterations == 0
+    few = Banded(small_lift, BandedOptions(max_iterations=3)).solve(starts[0].x, deadline=soon())
+    assert not few.converged and few.status == "Maximum_Iterations_Exceeded" and few.iterations == 3
+
+
+def test_infeasible_task_is_not_called_solved(
+    banded: Banded, starts: list[Start], small_lift: Problem, make_task: Callable[..., LiftTask]
+) -> None:
+    """A metre out of reach."""
+    task = make_task(agent_weights=(1.0, 1.0), x=-1.5)
+    assert not banded.solve(starts[0].x, deadline=soon(), problem=replace(small_lift, task=task)).converged
+
+
+def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., LiftTask]) -> None:
+    """Two arms of four joints and a box, evaluated by CasADi's virtual machine: Newton's matrix through Python."""
+    problem = Problem(arm_team, make_task(), RestToRestSpline(6).mesh())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CC", "")
+        patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
+        banded = Banded(problem, BandedOptions(max_iterations=3))
+    result = banded.solve(naive_start(problem).x, deadline=soon())
+    assert result.iterations == 3 and np.isfinite(result.objective)
+
+
+def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Start]) -> None:
+    """One Newton iteration from the same start by the wide kernels and by CasADi's functions through Python."""
+    options = BandedOptions(max_iterations=4)
+    wide = Banded(small_lift, options)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("liftopt.collocation.solvers.banded.wide_kernels", lambda *_: None)
+        slow = Banded(small_lift, options)
+    one, other = (solver.solve(starts[0].x, deadline=soon()) for solver in (wide, slow))
+    np.testing.assert_allclose(one.objective, other.objective, rtol=1e-9)
+    np.testing.assert_allclose(one.x, other.x, rtol=0, atol=1e-5)
+    np.testing.assert_allclose(one.multipliers.g, other.multipliers.g, rtol=0, atol=1e-3)
+
+
+def test_forces_first_is_the_cheaper_order(small_lift: Problem, banded: Banded) -> None:
+    """The count of multiplications, against control points first."""
+    order = elimination_order(small_lift)
+    knots = len(small_lift.mesh.phase)
+    other = extension.InteriorPoint(banded._nlp, order[knots:] + order[:knots])
+    assert banded.multiplications < 0.8 * other.multiplications()
+
+
+def test_work_is_linear_in_the_intervals(team: Team, make_task: Callable[..., LiftTask]) -> None:
+    counts = [Banded(Problem(team, make_task(), RestToRestSpline(n).mesh())).multiplications for n in (10, 20, 40)]
+    np.testing.assert_allclose((counts[2] - counts[1]) / (counts[1] - counts[0]), 2.0, rtol=0.01)
+
+
+def test_interleaved_places() -> None:
+    """By hand: two parts of 2 and 1 entries at 3 knots in pairs of lanes."""
+    found = interleaved([2, 1], 3, 2)
+    np.testing.assert_array_equal(found.places[0], [0, 2, 1, 3, 4, 6])
+    np.testing.assert_array_equal(found.places[1], [8, 9, 10])
+    assert found.end == 12
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_shipped_scenarios(name: str) -> None:
+    """N = 20 from one posture pair: verified KKT error, and an objective in the band of IPOPT's from the same start."""
+    problem = problem_of(load_scenario(name))
+    x = posture_pair(problem)
+    result, reference = Banded(problem).solve(x, deadline=soon()), Ipopt(problem).solve(x, deadline=soon())
+    assert result.converged and kkt_error(problem, result.x, result.multipliers).error <= TOLERANCE
+    assert result.objective <= 1.3 * reference.objective
+
+
+def test_varied_scenarios_at_the_first_try() -> None:
+    """Statures, masses, heights, distances and durations: 19 of 20 at the first try, each KKT error by Pinocchio."""
+    rng, base, banded, failed = np.random.default_rng(11), load_scenario("table5"), None, []
+    ranges = {
+        "human.stature": (1.55, 1.92), "human.mass": (52.0, 98.0), "table.mass": (1.0, 4.0), "duration": (1.4, 3.0),
+        "task.start.height": (0.75, 1.0), "task.end.height": (1.2, 1.5), "task.standing_distance": (1.75, 2.05),
+    }  # fmt: skip
+    for _ in range(20):
+        overrides = [f"{key}={rng.uniform(*bounds):.3f}" for key, bounds in ranges.items()]
+        problem = problem_of(with_overrides(base, overrides))
+        banded = banded or Banded(problem)
+        result = banded.solve(posture_pair(problem), deadline=soon(), problem=problem)
+        if not result.converged or kkt_error(problem, result.x, result.multipliers).error > TOLERANCE:
+            failed.append((overrides, result.status))
+    assert len(failed) <= 1, failed
+
+
+def test_ipopt_takes_over_where_it_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The record and the progress say so, and the solution is IPOPT's, verified."""
+    solve = Banded.solve
+
+    def fail(self: Banded, *args: Any, **options: Any) -> SolverResult:
+        return replace(solve(self, *args, **options), converged=False, status="Line_Search_Failed")
+
+    monkeypatch.setattr(Banded, "solve", fail)
+    lines: list[str] = []
+    scenario = with_overrides(load_scenario("table5"), ["solver.name=banded", "solver.starts=2", "solver.intervals=16"])
+    solution = lift(scenario, progress=lines.append)
+    assert solution.verification.passed and any("IPOPT takes over" in line for line in lines)
+    assert {start.status for start in solution.starts} == {"converged (IPOPT, after banded: Line_Search_Failed)"}
