@@ -319,10 +319,10 @@ def test_two_processes_on_one_cold_cache_end_well(tmp_path: Path) -> None:
 def test_key_follows_topology_and_builder(make_chain: Callable[..., pin.Model]) -> None:
     """Different code or structure: another file; equal ones: the same in another process, too."""
     topology = tiny_topology()
-    here = kernels._key(agent_functions, topology)
+    here = kernels.kernel_key(agent_functions, topology)
     there = runpy.run_path(__file__)["tiny_topology"]()
-    assert kernels._key(agent_functions, there) == here
-    assert kernels._key(agent_functions, Topology.of(make_chain(0, ("RX", "RY")), ("tip",))) != here
+    assert kernels.kernel_key(agent_functions, there) == here
+    assert kernels.kernel_key(agent_functions, Topology.of(make_chain(0, ("RX", "RY")), ("tip",))) != here
 
 
 if __name__ == "__main__":
