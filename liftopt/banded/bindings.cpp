@@ -121,7 +121,15 @@ struct Solver {
 
 PYBIND11_MODULE(_liftopt_banded, module) {
   module.doc() = "An interior point for problems whose condensed Newton matrix is block banded.";
-  module.def("instructions", [] { return banded::dense_operations().name; }, "Instruction set that is used.");
+  module.def(
+      "instructions",
+      [] {
+        std::vector<std::string> names;
+        for (const banded::DenseOperations* variant : banded::runnable_operations()) names.push_back(variant->name);
+        return names;
+      },
+      "Variants of the dense operations that this processor can run, the one used by default first.");
+  module.def("choose_instructions", &banded::choose_operations, "Choose the variant of solvers made from now on.");
   py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp");
   py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
       .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("parts"), py::arg("weights"), py::arg("combine"),

@@ -160,15 +160,33 @@ LIFTOPT_VARIANT(avx2, __attribute__((target("avx2,fma"))), 1, 4)
 LIFTOPT_VARIANT(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), 3, 8)
 #endif
 
+const DenseOperations*& chosen() {
+  static const DenseOperations* operations = runnable_operations().front();
+  return operations;
+}
+
 }  // namespace
 
-const DenseOperations& dense_operations() {
+std::vector<const DenseOperations*> runnable_operations() {
+  std::vector<const DenseOperations*> variants;
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    return avx512::all;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::all;
+    variants.push_back(&avx512::all);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) variants.push_back(&avx2::all);
 #endif
-  return portable::all;
+  variants.push_back(&portable::all);
+  return variants;
+}
+
+const DenseOperations& dense_operations() { return *chosen(); }
+
+bool choose_operations(const std::string& name) {
+  for (const DenseOperations* variant : runnable_operations())
+    if (variant->name == name) {
+      chosen() = variant;
+      return true;
+    }
+  return false;
 }
 
 }  // namespace banded

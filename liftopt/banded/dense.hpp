@@ -3,6 +3,9 @@
 // A block is column-major; its rows are padded with zeros to a multiple of kLanes, its start is aligned to a lane.
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace banded {
 
 constexpr int kLanes = 8;
@@ -35,7 +38,11 @@ struct DenseOperations {
                               double sign);
 };
 
-// The fastest variant that this processor can run.
+// The variants that this processor can run, the fastest first.
+std::vector<const DenseOperations*> runnable_operations();
+
+// The fastest of them, or the one chosen by name; solvers that exist keep theirs.
 const DenseOperations& dense_operations();
+bool choose_operations(const std::string& name);
 
 }  // namespace banded

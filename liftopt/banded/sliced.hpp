@@ -40,9 +40,10 @@ class Sliced {
   // y += A x
   void multiply(const double* x, double* y) const {
     alignas(64) double sums[kLanes];
+    const auto gather = dense_operations().gather;
     for (std::size_t slice = 0; slice + 1 < start_.size(); ++slice) {
-      dense_operations().gather(sums, value_.data() + start_[slice] * kLanes, index_.data() + start_[slice] * kLanes,
-                                start_[slice + 1] - start_[slice], x);
+      gather(sums, value_.data() + start_[slice] * kLanes, index_.data() + start_[slice] * kLanes,
+             start_[slice + 1] - start_[slice], x);
       for (int l = 0; l < kLanes; ++l)
         if (const int row = order_[slice * kLanes + l]; row >= 0) y[row] += sums[l];
     }

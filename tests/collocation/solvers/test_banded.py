@@ -146,6 +146,24 @@ def test_order_of_elimination_does_not_matter() -> None:
     np.testing.assert_allclose(other["x"], forward["x"], rtol=0, atol=1e-6)
 
 
+@pytest.mark.parametrize("name", extension.instructions())
+def test_every_instruction_set_gives_the_same(name: str) -> None:
+    """All that this processor can run, on blocks whose sizes fill no vector."""
+    problem = random_problem(2, convex=False)
+    reference = problem.solve(tolerance=1e-9)
+    assert extension.choose_instructions(name)
+    try:
+        found = problem.solve(tolerance=1e-9)
+    finally:
+        extension.choose_instructions(extension.instructions()[0])
+    assert found["status"] == "Solve_Succeeded" and found["iterations"] == reference["iterations"]
+    np.testing.assert_allclose(found["x"], reference["x"], rtol=0, atol=1e-7)
+
+
+def test_unknown_instructions_are_refused() -> None:
+    assert not extension.choose_instructions("abacus")
+
+
 def test_dependent_equalities_do_no_harm() -> None:
     """Every equality twice: multipliers are not unique, the solution is."""
     problem = random_problem(3, convex=True)
