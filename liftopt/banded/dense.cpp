@@ -10,9 +10,16 @@
 namespace banded {
 namespace {
 
-typedef double Lane __attribute__((vector_size(8 * kLanes), aligned(64)));
+// Vectors as wide as the target's registers: wider ones would be split through memory.
+typedef double Two __attribute__((vector_size(16), aligned(16)));
+#if defined(__x86_64__)
+typedef double Four __attribute__((vector_size(32), aligned(32)));
+typedef double Eight __attribute__((vector_size(64), aligned(64)));
+#endif
+template <class Lane>
+constexpr int kWidth = sizeof(Lane) / sizeof(double);
 
-template <int Height, int Width>
+template <class Lane, int Height, int Width>
 LIFTOPT_INLINE void multiply_tile(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int depth,
                                   double sign) {
   Lane sum[Width][Height];
@@ -34,42 +41,37 @@ LIFTOPT_INLINE void multiply_tile(double* c, int ldc, const double* a, int lda, 
   }
 }
 
-template <int Tall, int Width>
+// Tiles of Tall vectors by Width columns, then of kLanes rows; of the lower triangle only those from the diagonal
+// on.
+template <class Lane, int Tall, int Width, bool Lower>
 LIFTOPT_INLINE void multiply_add(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,
                                  int columns, int depth, double sign) {
+  constexpr int kTall = Tall * kWidth<Lane>, kShort = kLanes / kWidth<Lane>;
   for (int j = 0; j < columns; j += Width) {
     double* cj = c + static_cast<long>(ldc) * j;
-    int i = 0;
-    for (; i + Tall * kLanes <= rows; i += Tall * kLanes)
-      multiply_tile<Tall, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, sign);
-    for (; i < rows; i += kLanes) multiply_tile<1, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, sign);
+    int i = Lower ? j / kLanes * kLanes : 0;
+    if (kTall % kLanes == 0 || (rows - i) % kTall == 0)
+      for (; i + kTall <= rows; i += kTall)
+        multiply_tile<Lane, Tall, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, sign);
+    for (; i < rows; i += kLanes)
+      multiply_tile<Lane, kShort, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, sign);
   }
 }
 
-template <int Width>
-LIFTOPT_INLINE void multiply_add_lower(double* c, int ldc, const double* a, int lda, const double* b, int ldb,
-                                       int rows, int depth) {
-  for (int j = 0; j < rows; j += Width) {
-    double* cj = c + static_cast<long>(ldc) * j;
-    int i = j / kLanes * kLanes;
-    for (; i + 2 * kLanes <= rows && Width == kLanes; i += 2 * kLanes)
-      multiply_tile<2, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, 1.0);
-    for (; i < rows; i += kLanes) multiply_tile<1, Width>(cj + i, ldc, a + i, lda, b + j, ldb, depth, 1.0);
-  }
-}
-
+template <class Lane>
 LIFTOPT_INLINE bool factorise(double* a, int ld, int n, double* inverse, double threshold) {
-  const int lanes = ld / kLanes;
+  constexpr int kSize = kWidth<Lane>;
+  const int lanes = ld / kSize;
   for (int j = 0; j < n; ++j) {
     double* column = a + static_cast<long>(ld) * j;
     if (!(column[j] > threshold)) return false;
     const double pivot = std::sqrt(column[j]), scale = 1.0 / pivot;
     Lane* from = reinterpret_cast<Lane*>(column);
-    for (int r = j / kLanes; r < lanes; ++r) from[r] *= scale;
+    for (int r = j / kSize; r < lanes; ++r) from[r] *= scale;
     for (int k = j + 1; k < n; ++k) {
       const double factor = column[k];
       Lane* to = reinterpret_cast<Lane*>(a + static_cast<long>(ld) * k);
-      for (int r = k / kLanes; r < lanes; ++r) to[r] -= from[r] * factor;
+      for (int r = k / kSize; r < lanes; ++r) to[r] -= from[r] * factor;
     }
     // Rows above the diagonal hold what symmetry left there.
     for (int r = 0; r < j; ++r) column[r] = 0.0;
@@ -85,79 +87,86 @@ LIFTOPT_INLINE bool factorise(double* a, int ld, int n, double* inverse, double 
       const double value = x[j] * scale;
       Lane* to = reinterpret_cast<Lane*>(x);
       // The first lane holds rows up to j too: the zeros above the diagonal keep them, row j is set afterwards.
-      for (int r = j / kLanes; r < lanes; ++r) to[r] -= lower[r] * value;
+      for (int r = j / kSize; r < lanes; ++r) to[r] -= lower[r] * value;
       x[j] = value;
     }
   }
   return true;
 }
 
+template <class Lane>
 LIFTOPT_INLINE void gather(double* sums, const double* values, const int* indices, int count, const double* x) {
-  Lane sum{};
-  for (int e = 0; e < count; ++e, indices += kLanes) {
-    const Lane at = {x[indices[0]], x[indices[1]], x[indices[2]], x[indices[3]],
-                     x[indices[4]], x[indices[5]], x[indices[6]], x[indices[7]]};
-    sum += at * reinterpret_cast<const Lane*>(values)[e];
-  }
-  *reinterpret_cast<Lane*>(sums) = sum;
+  constexpr int kSize = kWidth<Lane>, kParts = kLanes / kSize;
+  Lane sum[kParts] = {};
+  for (int e = 0; e < count; ++e, indices += kLanes, values += kLanes)
+#pragma GCC unroll 4
+    for (int part = 0; part < kParts; ++part) {
+      Lane at;
+#pragma GCC unroll 8
+      for (int l = 0; l < kSize; ++l) at[l] = x[indices[part * kSize + l]];
+      sum[part] += at * reinterpret_cast<const Lane*>(values)[part];
+    }
+  for (int part = 0; part < kParts; ++part) reinterpret_cast<Lane*>(sums)[part] = sum[part];
 }
 
+template <class Lane>
 LIFTOPT_INLINE void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,
                                     double sign) {
   Lane* to = reinterpret_cast<Lane*>(y);
   for (int j = 0; j < columns; ++j) {
     const Lane* column = reinterpret_cast<const Lane*>(a + static_cast<long>(lda) * j);
     const double factor = sign * x[j];
-    for (int r = 0; r < rows / kLanes; ++r) to[r] += column[r] * factor;
+    for (int r = 0; r < rows / kWidth<Lane>; ++r) to[r] += column[r] * factor;
   }
 }
 
+template <class Lane>
 LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int rows, int columns, const double* x,
                                         double sign) {
   const Lane* from = reinterpret_cast<const Lane*>(x);
   for (int j = 0; j < columns; ++j) {
     const Lane* column = reinterpret_cast<const Lane*>(a + static_cast<long>(lda) * j);
     Lane sum{};
-    for (int r = 0; r < rows / kLanes; ++r) sum += column[r] * from[r];
+    for (int r = 0; r < rows / kWidth<Lane>; ++r) sum += column[r] * from[r];
     double total = 0.0;
-    for (int r = 0; r < kLanes; ++r) total += sum[r];
+    for (int r = 0; r < kWidth<Lane>; ++r) total += sum[r];
     y[j] += sign * total;
   }
 }
 
-// The same bodies for a target: its name, its attribute, and the tile of lanes by columns.
-#define LIFTOPT_VARIANT(NAME, TARGET, TALL, WIDTH)                                                                  \
-  namespace NAME {                                                                                                  \
-  TARGET void multiply_add(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,        \
-                           int columns, int depth, double sign) {                                                   \
-    banded::multiply_add<TALL, WIDTH>(c, ldc, a, lda, b, ldb, rows, columns, depth, sign);                          \
-  }                                                                                                                 \
-  TARGET void multiply_add_lower(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,  \
-                                 int depth) {                                                                       \
-    banded::multiply_add_lower<WIDTH>(c, ldc, a, lda, b, ldb, rows, depth);                                         \
-  }                                                                                                                 \
-  TARGET bool factorise(double* a, int ld, int n, double* inverse, double threshold) {                              \
-    return banded::factorise(a, ld, n, inverse, threshold);                                                         \
-  }                                                                                                                 \
-  TARGET void gather(double* sums, const double* values, const int* indices, int count, const double* x) {          \
-    banded::gather(sums, values, indices, count, x);                                                                \
-  }                                                                                                                 \
-  TARGET void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,          \
-                              double sign) {                                                                        \
-    banded::multiply_vector(y, a, lda, rows, columns, x, sign);                                                     \
-  }                                                                                                                 \
-  TARGET void multiply_transposed(double* y, const double* a, int lda, int rows, int columns, const double* x,      \
-                                  double sign) {                                                                    \
-    banded::multiply_transposed(y, a, lda, rows, columns, x, sign);                                                 \
-  }                                                                                                                 \
-  const DenseOperations all = {#NAME,  multiply_add,    multiply_add_lower, factorise,                               \
-                               gather, multiply_vector, multiply_transposed};                                       \
+// The same bodies for a target: its name, its attribute, its vectors, and the tile of vectors by columns.
+#define LIFTOPT_VARIANT(NAME, TARGET, LANE, TALL, WIDTH)                                                               \
+  namespace NAME {                                                                                                     \
+  TARGET void multiply_add(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,           \
+                           int columns, int depth, double sign) {                                                      \
+    banded::multiply_add<LANE, TALL, WIDTH, false>(c, ldc, a, lda, b, ldb, rows, columns, depth, sign);                \
+  }                                                                                                                    \
+  TARGET void multiply_add_lower(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,     \
+                                 int depth) {                                                                          \
+    banded::multiply_add<LANE, TALL, WIDTH, true>(c, ldc, a, lda, b, ldb, rows, rows, depth, 1.0);                     \
+  }                                                                                                                    \
+  TARGET bool factorise(double* a, int ld, int n, double* inverse, double threshold) {                                 \
+    return banded::factorise<LANE>(a, ld, n, inverse, threshold);                                                      \
+  }                                                                                                                    \
+  TARGET void gather(double* sums, const double* values, const int* indices, int count, const double* x) {             \
+    banded::gather<LANE>(sums, values, indices, count, x);                                                             \
+  }                                                                                                                    \
+  TARGET void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,             \
+                              double sign) {                                                                           \
+    banded::multiply_vector<LANE>(y, a, lda, rows, columns, x, sign);                                                  \
+  }                                                                                                                    \
+  TARGET void multiply_transposed(double* y, const double* a, int lda, int rows, int columns, const double* x,         \
+                                  double sign) {                                                                       \
+    banded::multiply_transposed<LANE>(y, a, lda, rows, columns, x, sign);                                              \
+  }                                                                                                                    \
+  const DenseOperations all = {#NAME,  multiply_add,    multiply_add_lower, factorise,                                 \
+                               gather, multiply_vector, multiply_transposed};                                          \
   }
 
-LIFTOPT_VARIANT(portable, , 1, 2)
+LIFTOPT_VARIANT(portable, , Two, 4, 2)
 #if defined(__x86_64__)
-LIFTOPT_VARIANT(avx2, __attribute__((target("avx2,fma"))), 1, 4)
-LIFTOPT_VARIANT(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), 3, 8)
+LIFTOPT_VARIANT(avx2, __attribute__((target("avx2,fma"))), Four, 3, 4)
+LIFTOPT_VARIANT(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), Eight, 3, 8)
 #endif
 
 const DenseOperations*& chosen() {
