@@ -6,6 +6,11 @@ rows are condensed into the matrix of the unknowns, equality rows enter by a pen
 Cholesky factorises the result, grasp forces first (they touch one knot each), then the control points in time. That
 the factorisation succeeds is the test of inertia. It has no restoration phase: from a start that is too far away it
 may give up where IPOPT goes on, and says so.
+
+Measured at N = 20 on Table 5 from the same start in one run, IPOPT with MUMPS takes 13 ms an iteration, this 1.0 ms
+(evaluation 0.36, assembly 0.16, factorisations 0.19, the rest 0.3) at about as many iterations. What exists was tried
+on a prototype of this problem and does not serve: FATROP took 27 ms a search direction and did not converge, IPOPT
+with SPRAL 47 ms an iteration, and one quadratic programme by PIQP 43 ms, by OSQP 295 ms.
 """
 
 from __future__ import annotations
@@ -24,10 +29,10 @@ from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
-# The verification recomputes the error by Pinocchio: what the solver calls converged must stay so there.
-SAFETY = 0.5
+# The verification recomputes the same error by Pinocchio, whose rounding differs: what converged must stay so there.
+SAFETY = 0.9
 # A warm start is near the solution: this barrier parameter and this share of the room to the bounds keep it there.
-WARM_MU, WARM_PUSH = 1e-5, 1e-5
+WARM_MU, WARM_PUSH = 1e-6, 1e-5
 
 
 @dataclass(frozen=True)
