@@ -69,13 +69,17 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     """
     knots = solution.time
     time = np.linspace(0.0, knots[-1], max(2, round(float(knots[-1]) * frame_rate) + 1))
-    bodies, forces, zero = {}, {}, {}
+    bodies: dict[str, BodyTrack] = {}
+    forces: dict[str, ForceTrack] = {}
+    zero: dict[str, Array] = {}
     for agent, track in zip(agents_of(solution.scenario), solution.agents, strict=True):
         q = CubicHermiteSpline(knots, track.q, track.v)(time)
         placements = _placements(agent, q)
         bodies |= {name: _track(list_) for name, list_ in placements.items()}
         forces[agent.name] = _force(agent, track, knots, time, q)
-        zero |= {name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()}
+        zero |= {
+            name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
+        }
     held = solution.held
     pose = CubicHermiteSpline(knots, held.pose, held.pose_velocity)(time)
     bodies[held.name] = _track([_object_placement(row) for row in pose])
