@@ -80,7 +80,7 @@ def _rula(scores: Rula, solution: Solution) -> Measure:
         "applies",
         f"grand score {span} of 7",
         f"At its worst ({at:.2f} s, {part:.0f} % of the lift): {ACTION[worst]}. Made for seated and standing work of "
-        "the arms; what the model lacks is scored by the assumptions below.",
+        "the arms; a lower bound here, for what the model lacks (the neck, a raised shoulder) is scored at its best.",
         RULA_SOURCE,
     )
 
@@ -93,8 +93,7 @@ def _niosh(equation: Niosh) -> Measure:
     return Measure(
         "Revised NIOSH lifting equation",
         "indicative",
-        f"lifting index {index}; recommended weight {origin:.1f} kg at the start, "
-        f"{destination:.1f} kg at the end",
+        f"lifting index {index}; recommended weight {origin:.1f} kg at the start, {destination:.1f} kg at the end",
         f"Outside its scope: {'; '.join(equation.out_of_scope)}. Load {equation.load:.2f} kg (average vertical hand "
         f"force), at most {equation.largest_load:.2f} kg. Assumed: one lift now and then (FM = 1), poor coupling "
         f"(CM = {COUPLING_MULTIPLIER:g}), the object put down with control.",

@@ -63,17 +63,21 @@ class JointCurve:
         joint: short name, ``"Q7"``.
         label: for a reader, DH name included.
         q: (K,) angle [deg].
+        v: (K,) speed [deg/s].
         tau: (K,) torque [Nm], positive in the positive direction of ``q``.
         q_limits, tau_limits: lower and upper limit of either.
+        v_limit: of the speed, either way.
         share: (K,) torque as a fraction of the limit in its direction.
     """
 
     joint: str
     label: str
     q: Array
+    v: Array
     tau: Array
     q_limits: tuple[float, float]
     tau_limits: tuple[float, float]
+    v_limit: float
     share: Array
 
 
@@ -103,8 +107,10 @@ def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCu
         joint=joint,
         label=label,
         q=sign * np.degrees(agent.q[:, column]),
+        v=sign * np.degrees(agent.v[:, column]),
         tau=sign * tau,
         q_limits=(float(min(sign * q)), float(max(sign * q))),
         tau_limits=(min(sign * lower, sign * upper), max(sign * lower, sign * upper)),
+        v_limit=float(np.degrees(limits.velocity[row])),
         share=share,
     )

@@ -33,6 +33,8 @@ def grasp_forces(lift: Lift) -> Figure:
     share.set_ylim(min(low, 0.0), max(high, 100.0))
     share.set(title="Load share: part of the vertical grasp force", ylabel="share of the load [%]")
     legend_above(share, 2)
+    if low >= 0.0 and high <= 100.0:
+        share.set_yticks(range(0, 101, 25))
     time_axes(grid, float(solution.time[-1]))
     return figure
 

@@ -57,7 +57,7 @@ def snapshots(lift: Lift) -> Figure:
         for agent, (color, head) in zip(solution.agents, ARROWS, strict=True):
             _arrow(axes, agent.grasp_position[k], KEY_LENGTH / key * agent.grasp_force[k], color, head)
         axes.axhline(0.0, color=INK, linewidth=1.0)
-        axes.set_title(f"{100 * moment:.0f} %   {solution.time[k]:.2f} s", loc="center", fontsize=11)
+        axes.set_title(f"{100 * moment:.0f} %, {solution.time[k]:.2f} s", loc="center", fontsize=11)
         axes.grid(False)
         axes.set_aspect("equal")
         axes.spines[["left", "bottom"]].set_visible(False)

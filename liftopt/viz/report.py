@@ -34,6 +34,8 @@ def write_report(solution: Solution, file: Path) -> None:
     Raises:
         InputError: the file cannot be written.
     """
+    if file.is_dir():
+        raise InputError("--html", str(file), "cannot be written: there is a folder of that name")
     text = report_html(solution)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -54,14 +54,14 @@ def findings(
         robot: joints of the robot.
         ergonomics: of the same times.
     """
+    joints = (("Person", human), ("Robot", robot))
     found = [
         *_status(dense),
-        *_torques(dense, "person", human),
-        *_torques(dense, "robot", robot),
+        *(finding for who, curves in joints for finding in _torques(dense, who, curves)),
         *_grasp(dense),
         *_posture(dense, ergonomics),
-        *_positions(dense, human + robot),
-        *_speeds(dense),
+        *(finding for who, curves in joints for finding in _positions(who, curves)),
+        *(finding for who, curves in joints for finding in _speeds(who, curves)),
         *_tilt(dense),
         *_between(dense),
         *_starts(dense),
@@ -82,7 +82,7 @@ def _torques(dense: Solution, who: str, curves: tuple[JointCurve, ...]) -> Itera
         k = int(np.argmax(curve.share))
         if curve.share[k] < NEAR_LIMIT:
             continue
-        title = f"{who.capitalize()}: {curve.label} uses {100 * curve.share[k]:.0f} % of its torque limit"
+        title = f"{who}: {curve.label} uses {100 * curve.share[k]:.0f} % of its torque limit"
         near = 100 * float((curve.share >= NEAR_LIMIT).mean())
         yield Finding(
             "warning", title, f"At {dense.time[k]:.2f} s; above {100 * NEAR_LIMIT:.0f} % for {near:.0f} % of the lift."
@@ -110,8 +110,8 @@ def _grasp(dense: Solution) -> Iterator[Finding]:
             "warning",
             f"The hands work against each other with up to {abs(squeeze[k]):.0f} N",
             f"At {dense.time[k]:.2f} s they {verb}, more than the {dense.held.name}'s weight of {weight:.0f} N. Such a "
-            "force lifts nothing; it appears where it unloads joints elsewhere, and a person would hardly do it unasked. "
-            "A higher objective.force_weight makes it dear.",
+            "force lifts nothing; it appears where it unloads joints, and a person would hardly exert it unasked. "
+            "A higher objective.force_weight discourages it.",
         )
 
 
@@ -131,24 +131,25 @@ def _posture(dense: Solution, ergonomics: Assessment) -> Iterator[Finding]:
         )
 
 
-def _positions(dense: Solution, curves: tuple[JointCurve, ...]) -> Iterator[Finding]:
+def _positions(who: str, curves: tuple[JointCurve, ...]) -> Iterator[Finding]:
     for curve in curves:
         low, high = curve.q_limits
         margin = AT_LIMIT * (high - low)
         for limit, at in ((low, curve.q <= low + margin), (high, curve.q >= high - margin)):
             if at.any():
-                yield _active(f"{curve.label} at the end of its range ({limit + 0.0:.0f}°)", float(at.mean()))
+                yield _active(
+                    f"{who}: {curve.label} at the end of its range ({limit + 0.0:.0f}°)".replace(
+                        "(-", "(\N{MINUS SIGN}"
+                    ),
+                    float(at.mean()),
+                )
 
 
-def _speeds(dense: Solution) -> Iterator[Finding]:
-    for agent in dense.agents:
-        speed = np.abs(agent.v[:, agent.moving])
-        at = (speed >= (1 - AT_LIMIT) * agent.limits.velocity).mean(axis=0)
-        for name, share, limit in zip(
-            np.array(agent.joint_names)[agent.moving], at, agent.limits.velocity, strict=True
-        ):
-            if share > 0:
-                yield _active(f"{name} at its speed limit ({limit:.3g} rad/s)", float(share))
+def _speeds(who: str, curves: tuple[JointCurve, ...]) -> Iterator[Finding]:
+    for curve in curves:
+        at = np.abs(curve.v) >= (1 - AT_LIMIT) * curve.v_limit
+        if at.any():
+            yield _active(f"{who}: {curve.label} at its speed limit ({curve.v_limit:.0f}°/s)", float(at.mean()))
 
 
 def _tilt(dense: Solution) -> Iterator[Finding]:
@@ -172,7 +173,8 @@ def _between(dense: Solution) -> Iterator[Finding]:
         return
     for check in dense.verification.checks:
         if check.name.endswith(BETWEEN) and "limits" in check.name and check.value > EXCEEDED:
-            title = f"{check.name.removesuffix(BETWEEN).capitalize()} exceeded between knots by {check.value:.2g} {check.unit}"
+            what = check.name.removesuffix(BETWEEN).capitalize()
+            title = f"{what} exceeded between knots by {check.value:.2g} {check.unit}"
             detail = f"{check.where}. Limits hold at the knots; more solver.intervals bring them closer."
             yield Finding("note", title, detail)
 

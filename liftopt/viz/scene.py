@@ -22,7 +22,6 @@ from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 
 Array = npt.NDArray[np.float64]
 WOOD: Colour = (0.78, 0.60, 0.38)
-EDGE: Colour = (0.55, 0.40, 0.24)
 PATH_COLOURS: dict[str, Colour] = {"human": (0.02, 0.45, 0.70), "robot": (0.90, 0.45, 0.0)}
 PATH_RADIUS = 0.004  # [m]
 GHOST_COLOUR, GHOST_TINT, GHOST_OPACITY = (0.45, 0.25, 0.80), 0.65, 0.40
@@ -92,10 +91,13 @@ def parts_of(cast: Cast) -> list[Part]:
     subject = Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
     name = cast.solution.held.name
     size = (table.depth, table.width, table.height)
-    height = robot.base_height
+    if cast.sawyer is None:
+        arm = sawyer_parts(world_base, robot.base_height)
+    else:
+        arm = sawyer_mesh_parts(cast.sawyer, world_base)
     return [
         *person_parts(subject),
-        *(sawyer_mesh_parts(cast.sawyer, world_base) if cast.sawyer else sawyer_parts(world_base, height)),
+        *arm,
         *gripper_parts(world_base, robot.tool.length),
         Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)),
     ]

@@ -1,4 +1,7 @@
-"""The person as a figure: smooth limbs, trunk and head through the subject's own breadths, depths and girths."""
+"""The person as a figure: smooth limbs, trunk and head through the subject's own breadths, depths and girths.
+
+Lengths, breadths and girths are the subject's; the fractions of them that shape a limb in between are drawn by eye.
+"""
 
 from __future__ import annotations
 

@@ -92,6 +92,8 @@ def _load(file: Path) -> Mesh:
         raise InputError("--sawyer", NO_VALUE, f"there is no mesh {file}")
     try:
         loaded = trimesh.load_mesh(file)
+        if not len(loaded.faces):
+            raise ValueError("it has no triangles")
         smooth = trimesh.graph.smooth_shade(loaded, angle=SHARP)
         return Mesh(np.asarray(smooth.vertices, float), np.asarray(smooth.faces, np.int64))
     except Exception as error:  # trimesh's readers raise whatever a broken file makes them raise

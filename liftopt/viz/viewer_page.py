@@ -7,6 +7,7 @@ lends its bundle of the viewer and three.js; its server and its Python classes a
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from importlib.resources import files
 from importlib.util import find_spec
@@ -49,7 +50,7 @@ def playback_page(
     data = {
         "commands": commands,
         "animation": {"type": "set_animation", "animations": tracks, "options": {"play": False, "repetitions": 1}},
-        "lifts": [_facts(cast) for cast in casts],
+        "lifts": [_facts(cast, name) for cast, name in zip(casts, _names(casts), strict=True)],
         "duration": max(float(cast.playback.time[-1]) for cast in casts),
         "metres_per_newton": scale,
         "sight": _sight(casts),
@@ -74,13 +75,21 @@ def _metres_per_newton(casts: Sequence[Cast]) -> float:
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted * (1.0 + 1e-9)))
 
 
-def _facts(cast: Cast) -> dict[str, Any]:
+def _names(casts: Sequence[Cast]) -> list[str]:
+    """Return what to call the lifts: their scenarios' names, told apart if they are the same."""
+    names = [cast.solution.scenario.name for cast in casts]
+    if len(set(names)) < len(names):
+        return [f"{name} ({place})" for name, place in zip(names, ("first", "second"), strict=True)]
+    return names
+
+
+def _facts(cast: Cast, name: str) -> dict[str, Any]:
     """Return what the page writes beside the picture."""
     solution, playback = cast.solution, cast.playback
     sizes = {name: np.round(np.linalg.norm(f.force, axis=1), 2).tolist() for name, f in playback.forces.items()}
     return {
         "root": cast.root,
-        "name": solution.scenario.name,
+        "name": name,
         "status": solution.status,
         "solved": solution.solved,
         "ghost": cast.ghost,
@@ -123,9 +132,8 @@ def _fill(data: dict[str, Any], title: str) -> str:
         "@SCRIPT@": (assets / "playback.js").read_text(encoding="utf-8"),
     }
     page = (assets / "playback.html").read_text(encoding="utf-8")
-    for mark, piece in pieces.items():
-        page = page.replace(mark, piece, 1)
-    return page
+    # In one pass: a piece may hold what looks like a mark.
+    return re.sub("|".join(pieces), lambda mark: pieces[mark.group()], page)
 
 
 def meshcat_viewer() -> Path:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
+from liftopt.errors import InputError
 from liftopt.multibody.subject import Subject
 from liftopt.scene import agents_of
 from liftopt.viz.playback import Playback, continuous, playback_of
@@ -84,6 +86,12 @@ def test_it_lasts_as_long_as_the_lift_and_forces_are_linear_between_knots(soluti
         shown = playback.forces[track.name].force
         at = np.stack([np.interp(middle, playback.time, shown[:, i]) for i in range(3)], axis=1)
         np.testing.assert_allclose(at, mean, atol=1e-9)
+
+
+@pytest.mark.parametrize("times", [[0.0, np.nan, 1.0], [0.0, 1.0, 1.0], [0.0]])
+def test_a_time_that_cannot_be_played_is_refused(solution: Any, times: list[float]) -> None:
+    with pytest.raises(InputError, match="cannot be shown"):
+        playback_of(replace(solution, time=np.array(times)))
 
 
 def test_quaternions_do_not_jump() -> None:

@@ -10,8 +10,10 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +21,10 @@ import pytest
 
 from liftopt.cli import main
 from liftopt.errors import InputError
+from liftopt.result_reader import load_result
 from liftopt.viz.scene_sawyer_meshes import DESCRIPTION
 from liftopt.viz.viewer import view
+from liftopt.viz.viewer_page import playback_page
 from liftopt.viz.viewer_server import PageServer
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
@@ -105,6 +109,35 @@ def test_what_cannot_be_done_is_refused_with_the_reason(folder: Path, tmp_path: 
         view(folder, html=tmp_path / "no" / "such" / "folder.html")
     with pytest.raises(InputError, match="is no sawyer_description"):
         view(folder, html=tmp_path / "page.html", sawyer=tmp_path)
+
+
+def test_a_browser_with_windows_is_opened_and_one_in_the_terminal_is_not(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+
+    class Windowed(webbrowser.BaseBrowser):
+        def open(self, url: str, new: int = 0, autoraise: bool = True) -> bool:
+            opened.append(url)
+            return True
+
+    def ended(self: PageServer, poll_interval: float) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(PageServer, "serve_forever", ended)
+    for browser, lines in ((Windowed(), 1), (webbrowser.GenericBrowser("false"), 2)):
+        said: list[str] = []
+        monkeypatch.setattr(webbrowser, "get", lambda browser=browser: browser)
+        view(folder, say=said.append)
+        assert len(said) == lines
+    assert len(opened) == 1
+    assert opened[0].startswith("http://127.0.0.1:")
+
+
+def test_a_status_that_looks_like_markup_stays_text(folder: Path) -> None:
+    page = playback_page(replace(load_result(folder), outcome="</script><b>@SCRIPT@"))
+    assert page.count("</script><b>") == 0
+    assert page.count("@SCRIPT@") == 1  # in the data, as text
 
 
 def test_the_script_is_the_command(folder: Path, tmp_path: Path) -> None:

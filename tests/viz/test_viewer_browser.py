@@ -139,11 +139,7 @@ def test_every_camera_preset_shows_the_lift_upright(opened: Any) -> None:
     """A point above another must be above it on the screen: no preset rolls the camera."""
     for name in opened.run("liftopt.presets"):
         opened.page.click(f"#views button:text-is('{name}')")
-        axes = np.array(
-            opened.run(
-                "(liftopt.viewer.camera.updateMatrixWorld(true), liftopt.viewer.camera.matrixWorld.elements.slice())"
-            )
-        )
+        axes = np.array(opened.run("(liftopt.viewer.render(), liftopt.viewer.camera.matrixWorld.elements.slice())"))
         right, up = axes.reshape(4, 4)[:2, :3]  # the viewer's world has Y up
         assert abs(right[1]) < 1e-3, name
         if name != "top":

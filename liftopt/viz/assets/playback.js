@@ -147,7 +147,7 @@
   }
   const depth = sight.half_depth[0];
   const presets = {
-    "three-quarter": () => [sight.middle, [0.14, -1, 0.26 + 0.12 * depth], distance_for(sight.half_width[0], 1.35) + depth],
+    "three-quarter": () => [sight.middle, [0.14, -1, 0.26 + 0.12 * depth], distance_for(sight.half_width[0], 1.28) + depth],
     side: () => [sight.middle, [0, -1, 0.02], distance_for(sight.half_width[0], 1.35) + depth],
     front: () => [sight.middle, [1, -0.6, 0.3], distance_for(sight.half_width[0], 1.35) + depth],
     top: () => [sight.middle, [0, -0.001, 1], distance_for(sight.half_width[0], 1.2 + depth) + 1],
