@@ -79,7 +79,10 @@ def test_a_weak_joint_is_named() -> None:
     for obstacle in obstacles:
         assert (obstacle.constraint, obstacle.unit) == ("torque", "times the limit")
         assert "_Q" in obstacle.who
-        assert f"holding still needs about {obstacle.amount:.2f} times the torque limit of {obstacle.who}" in obstacle.message
+        assert (
+            f"holding still needs about {obstacle.amount:.2f} times the torque limit of {obstacle.who}"
+            in obstacle.message
+        )
         assert obstacle.amount > 1.0
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import webbrowser
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import FrameType
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.result_reader import load_result
-from liftopt.viz.viewer_page import playback_page
 from liftopt.viz.viewer_server import FIRST_PORT, PageServer
 
 
@@ -43,8 +44,8 @@ def view(
         raise InputError("--ghost", NO_VALUE, "needs a second result: add --with OTHER")
     if not 0 <= port <= 65535:
         raise InputError("--port", port, "must be from 0 to 65535")
-    second = None if other is None else load_result(other)
-    page = playback_page(load_result(result), second, ghost=ghost, sawyer=sawyer)
+    with _interrupts_kept():
+        page = _page(result, other, ghost, sawyer)
     if html is not None:
         _write(Path(html), page)
         say(f"Written to {html}: {len(page.encode('utf-8')) / 1e6:.1f} MB, complete in itself")
@@ -55,6 +56,36 @@ def view(
             say("No browser could be opened here: open this address in one.")
         with suppress(KeyboardInterrupt):
             server.serve_forever(poll_interval=0.2)
+
+
+def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str | Path | None) -> str:
+    from liftopt.result_reader import load_result
+    from liftopt.viz.viewer_page import playback_page
+
+    second = None if other is None else load_result(other)
+    return playback_page(load_result(result), second, ghost=ghost, sawyer=sawyer)
+
+
+@contextmanager
+def _interrupts_kept() -> Iterator[None]:
+    """Interrupt after the block if something inside swallowed it, as trimesh does while it tries its imports."""
+    handler = signal.getsignal(signal.SIGINT)
+    if handler is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    noted: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        noted.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    if noted:
+        raise KeyboardInterrupt
 
 
 def _write(file: Path, page: str) -> None:

@@ -25,10 +25,30 @@ from liftopt.result_reader import load_result
 from liftopt.viz.scene_sawyer_meshes import DESCRIPTION
 from liftopt.viz.viewer import view
 from liftopt.viz.viewer_page import playback_page
-from liftopt.viz.viewer_server import PageServer
+from liftopt.viz.viewer_server import HOST, PageServer
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 PATIENCE = 60.0  # [s]
+# A shell may start the tests in the background, where Ctrl-C is ignored; the command has it as on a terminal.
+RUN = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from liftopt.cli import main
+sys.exit(main(["view", *sys.argv[1:]]))
+"""
+# A library that swallows an interrupt while it is imported.
+SWALLOW = """
+import builtins, signal
+usual = builtins.__import__
+def swallowing(name, *arguments, **more):
+    if name == "liftopt.result_reader":
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except BaseException:
+            pass
+    return usual(name, *arguments, **more)
+builtins.__import__ = swallowing
+"""
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +58,7 @@ def folder(solved: Callable[..., Any]) -> Path:
 
 @contextmanager
 def _viewing(folder: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    command = [sys.executable, "-u", "-m", "liftopt", "view", str(folder), "--no-browser", *options]
+    command = [sys.executable, "-u", "-c", RUN, str(folder), "--no-browser", *options]
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
@@ -71,13 +91,20 @@ def test_it_serves_the_very_page_and_nothing_outlives_it(
             urllib.request.urlopen(url)
 
 
+def test_an_interrupt_while_it_loads_is_not_lost(folder: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-c", SWALLOW + RUN, str(folder), "--html", str(tmp_path / "page.html")]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
+    assert (run.returncode, run.stdout, run.stderr) == (130, "", "liftopt: error: interrupted\n")
+    assert not (tmp_path / "page.html").exists()
+
+
 def test_a_port_that_is_taken_is_stepped_over() -> None:
     with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
+        taken.bind((HOST, 0))
         taken.listen()
         port = taken.getsockname()[1]
         with PageServer("<p>", port) as server:
-            assert server.server_address[0] == "127.0.0.1"
+            assert server.server_address[0] == HOST
             assert server.server_address[1] != port
             with PageServer("<p>", server.server_address[1]) as second:
                 assert second.url != server.url
@@ -131,7 +158,7 @@ def test_a_browser_with_windows_is_opened_and_one_in_the_terminal_is_not(
         view(folder, say=said.append)
         assert len(said) == lines
     assert len(opened) == 1
-    assert opened[0].startswith("http://127.0.0.1:")
+    assert opened[0].startswith(f"http://{HOST}:")
 
 
 def test_a_status_that_looks_like_markup_stays_text(folder: Path) -> None:
