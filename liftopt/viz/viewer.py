@@ -50,12 +50,11 @@ def view(
         _write(Path(html), page)
         say(f"Written to {html}: {len(page.encode('utf-8')) / 1e6:.1f} MB, complete in itself")
         return
-    with PageServer(page, port) as server:
+    with PageServer(page, port) as server, suppress(KeyboardInterrupt):
         say(f"Playing at {server.url} (Ctrl-C ends it)")
         if browser and not _opened(server.url):
             say("No browser could be opened here: open this address in one.")
-        with suppress(KeyboardInterrupt):
-            server.serve_forever(poll_interval=0.2)
+        server.serve_forever(poll_interval=0.2)
 
 
 def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str | Path | None) -> str:
