@@ -19,7 +19,7 @@ from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.scenario import Scenario
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import URDF_FILES, agents_of, object_of, task_of
 from liftopt.solution import SOLVED, Solution, StartRecord
 from liftopt.verify import CLOSURE_BETWEEN_KNOTS, verify
 
@@ -28,7 +28,6 @@ Say = Callable[[str], None]
 POSTURE_SHARE, START_SHARE = 0.3, 0.5
 SOLVING_SHARE = 0.9
 FINEST = 400
-URDFS = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 
 
 def lift(scenario: Scenario, *, out: Path | None = None, progress: Say | None = None) -> Solution:
@@ -160,7 +159,7 @@ class _Search:
             time=motion.time,
             agents=motion.agents,
             held=motion.held,
-            urdfs={URDFS[name]: text for name, text in models.items()},
+            urdfs={URDF_FILES[name]: text for name, text in models.items()},
             objective=sum(weights[name] * value for name, value in terms.items()),
             objective_terms=terms,
             objective_weights=weights,

@@ -59,7 +59,8 @@ def _read(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, Any], folder: Path) -> Solution:
     record = json.loads(str(attributes["record"]))
-    agents, held = agents_of(scenario), object_of(scenario)
+    urdfs = {file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "models").glob("*.urdf"))}
+    agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
     time = _array(data, "time", (len(data["time"]),))
     knots = len(time)
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
@@ -70,7 +71,7 @@ def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, An
         time=time,
         agents=tuple(_agent(agent, data, forces[:, i]) for i, agent in enumerate(agents)),
         held=_object(held, data, forces.reshape(knots, -1)),
-        urdfs={file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "models").glob("*.urdf"))},
+        urdfs=urdfs,
         objective=float(attributes["objective"]),
         objective_terms={name: float(attributes[f"objective_{name}"]) for name in record["objective_weights"]},
         objective_weights=record["objective_weights"],

@@ -89,9 +89,12 @@ def _key(figure: Figure, axes: Axes, force: float, held: str) -> None:
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
     """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
     solution = lift.dense
-    held = object_of(solution.scenario)
+    held = object_of(solution.scenario, solution.urdfs)
     poses = np.hstack([solution.held.pose[:, :3], solution.held.quaternion])
-    models = [*((agent.model, agent.urdf) for agent in agents_of(solution.scenario)), (held.model, held.urdf)]
+    models = [
+        *((agent.model, agent.urdf) for agent in agents_of(solution.scenario, solution.urdfs)),
+        (held.model, held.urdf),
+    ]
     motions = [*(agent.q for agent in solution.agents), poses]
     return [
         (model, pin.buildGeomFromUrdfString(model, urdf, pin.GeometryType.VISUAL), q)
