@@ -59,8 +59,8 @@ class Verification:
 
     @property
     def max_violation(self) -> float:
-        """The largest value among the checks that hold at the knots to 1e-6."""
-        return max(check.value for check in self.checks if check.limit == AT_KNOTS)
+        """The largest value among the checks that hold at the knots to 1e-6; NaN if one of them is."""
+        return float(np.max([check.value for check in self.checks if check.limit == AT_KNOTS]))
 
     def describe_failure(self) -> str:
         """Return what fails, by name, amount and place, in one line."""

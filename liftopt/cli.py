@@ -1,4 +1,4 @@
-"""The command line: ``liftopt solve`` and ``liftopt crosscheck``.
+"""The command line: ``liftopt solve``, ``report``, ``plot`` and ``crosscheck``.
 
 Exit status: 0 solved and verified (or all cross-checks passed), 2 bad input, 3 no verified solution, 130 interrupted.
 Results go to stdout, progress and errors to stderr. Modules that load the solver are imported when they are needed, so
@@ -96,6 +96,49 @@ def _parser() -> argparse.ArgumentParser:
         "--samples", type=int, default=1000, metavar="N", help="random states of each (default: %(default)s)"
     )
     crosscheck.set_defaults(run=_crosscheck)
+    view = commands.add_parser(
+        "view",
+        help="play a solved lift in the browser",
+        description="Play a solved lift in the browser until Ctrl-C, or write the playback to a file.",
+        allow_abbrev=False,
+    )
+    view.add_argument("result", metavar="RESULT", help="the folder that solve wrote, or its solution.nc")
+    view.add_argument("--with", dest="other", metavar="OTHER", help="a second result, shown beside the first")
+    view.add_argument("--ghost", action="store_true", help="show the second one see-through in the first one's place")
+    view.add_argument("--html", metavar="FILE", help="write one self-contained page instead of opening the browser")
+    view.add_argument(
+        "--sawyer", metavar="DIR", help="the manufacturer's sawyer_description folder: draw the robot with its meshes"
+    )
+    view.add_argument("--port", type=int, default=7000, metavar="N", help="first port to try (default: %(default)s)")
+    view.add_argument("--no-browser", action="store_false", dest="browser", help="serve the page, open no browser")
+    view.set_defaults(run=_view)
+
+    report = commands.add_parser(
+        "report",
+        help="write one page that holds all there is to know of a solved lift",
+        description="Write a self-contained HTML page: playback, plots, tables, ergonomics, verification, warnings.",
+        allow_abbrev=False,
+    )
+    report.add_argument("result", metavar="RESULT", help="a result folder, or its solution.nc")
+    report.add_argument("--html", metavar="FILE", required=True, help="the page to write")
+    report.set_defaults(run=_report)
+
+    plot = commands.add_parser(
+        "plot",
+        help="write the plots of a solved lift as SVG, PNG and PDF",
+        description="Write the plots of a solved lift, those of its report, to a folder.",
+        allow_abbrev=False,
+    )
+    plot.add_argument("result", metavar="RESULT", help="a result folder, or its solution.nc")
+    plot.add_argument("--out", metavar="DIR", required=True, help="folder for the plots")
+    plot.add_argument(
+        "--format",
+        action="append",
+        choices=("svg", "png", "pdf"),
+        dest="formats",
+        help="may be repeated (default: all three)",
+    )
+    plot.set_defaults(run=_plot)
     return parser
 
 
@@ -115,6 +158,28 @@ def _solve(args: argparse.Namespace) -> int:
         return SOLVED
     _complain(f"no verified solution: {summary['reason']}; the best iterate is in {out}, marked as such")
     return NOT_SOLVED
+
+
+def _report(args: argparse.Namespace) -> int:
+    from liftopt.result_reader import load_result
+
+    solution = load_result(args.result)
+    from liftopt.viz.report import write_report
+
+    write_report(solution, Path(args.html))
+    _write(f"Written to {args.html}\n")
+    return SOLVED
+
+
+def _plot(args: argparse.Namespace) -> int:
+    from liftopt.result_reader import load_result
+
+    solution = load_result(args.result)
+    from liftopt.viz.plots import FORMATS, write_plots
+
+    files = write_plots(solution, Path(args.out), args.formats or FORMATS)
+    _write(f"Written to {args.out}: {len(files)} files\n")
+    return SOLVED
 
 
 def _crosscheck(args: argparse.Namespace) -> int:
@@ -176,6 +241,22 @@ def _as_text(summary: dict[str, Any]) -> str:
     with console.capture() as capture:
         print_summary(summary, console)
     return "\n".join(line.rstrip() for line in capture.get().split("\n"))
+
+
+def _view(args: argparse.Namespace) -> int:
+    from liftopt.viz.viewer import view
+
+    view(
+        args.result,
+        other=args.other,
+        ghost=args.ghost,
+        html=args.html,
+        sawyer=args.sawyer,
+        port=args.port,
+        browser=args.browser,
+        say=lambda line: _write(line + "\n"),
+    )
+    return SOLVED
 
 
 def _scenario_help() -> str:

@@ -22,7 +22,7 @@ def refined(solution: Solution, factor: int) -> Solution:
     """
     time = _finer(solution.time, factor)
     agents, forces = [], []
-    for model, agent in zip(agents_of(solution.scenario), solution.agents, strict=True):
+    for model, agent in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q, v, a = motion_between(solution.time, agent.q, agent.v, agent.a, time)
         force = _linear(solution.time, agent.grasp_force, time)
         moving = agent.moving
@@ -34,7 +34,7 @@ def refined(solution: Solution, factor: int) -> Solution:
         solution,
         time=time,
         agents=tuple(agents),
-        held=object_trajectory(object_of(solution.scenario), *motion, np.hstack(forces)),
+        held=object_trajectory(object_of(solution.scenario, solution.urdfs), *motion, np.hstack(forces)),
     )
 
 

@@ -14,21 +14,21 @@ from liftopt.checks import Verification
 from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.screen import screen, too_fast
+from liftopt.collocation.screen import Obstacle, screen, too_fast
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.scenario import Scenario
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import URDF_FILES, agents_of, object_of, task_of
 from liftopt.solution import SOLVED, Solution, StartRecord
 from liftopt.verify import CLOSURE_BETWEEN_KNOTS, verify
 
 Say = Callable[[str], None]
 # Shares of the time that is left: the search for postures, one start of several.
 POSTURE_SHARE, START_SHARE = 0.3, 0.5
+SOLVING_SHARE = 0.9
 FINEST = 400
-URDFS = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 
 
 def lift(scenario: Scenario, *, out: Path | None = None, progress: Say | None = None) -> Solution:
@@ -54,8 +54,8 @@ def lift(scenario: Scenario, *, out: Path | None = None, progress: Say | None = 
     team = Team.of(agents_of(scenario), object_of(scenario), say)
     if not all(kernel.compiled for kernel in team.kernels):
         notes.append("no C compiler: the dynamics ran in CasADi's virtual machine, several times slower")
-    # Compiling is done once in a lifetime; the limit is on what comes after.
-    deadline = time.monotonic() + scenario.solver.time_limit
+    # Compiling is done once in a lifetime; the limit is on what comes after, with time left to verify and write.
+    deadline = time.monotonic() + SOLVING_SHARE * scenario.solver.time_limit
     search = _Search(scenario, team, RestToRestSpline(scenario.solver.intervals), deadline, say)
     best = search.run()
     while best.refinable and search.spline.intervals * 2 <= FINEST and time.monotonic() < deadline:
@@ -112,8 +112,11 @@ class _Search:
         options = self.scenario.solver
         until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
         starts = posture_starts(self.problem, max(1, options.starts - 1), options.seed, until, self.say)
-        if (not starts or too_fast(self.problem)) and (hindered := self._hindered()):
-            return hindered
+        if not starts or too_fast(self.problem):
+            nearest, obstacles = self._nearest()
+            if obstacles:
+                return self._hindered(nearest, obstacles)
+            starts = [nearest]
         self.prepared = time.monotonic()
         starts = [*starts, naive_start(self.problem)][: options.starts]
         results = [(start, self._solve(start, len(starts))) for start in starts]
@@ -161,7 +164,7 @@ class _Search:
             time=motion.time,
             agents=motion.agents,
             held=motion.held,
-            urdfs={URDFS[name]: text for name, text in models.items()},
+            urdfs={URDF_FILES[name]: text for name, text in models.items()},
             objective=sum(weights[name] * value for name, value in terms.items()),
             objective_terms=terms,
             objective_weights=weights,
@@ -175,7 +178,8 @@ class _Search:
         )
 
     def _solve(self, start: Start, of: int) -> SolverResult:
-        self.say(f"solving on {self.spline.intervals} intervals: {start.name} ({len(self.records) + 1} of {of})")
+        which = f" ({len(self.records) + 1} of {of})" if of > 1 else ""
+        self.say(f"solving on {self.spline.intervals} intervals: {start.name}{which}")
         now = time.monotonic()
         until = self.deadline if of == 1 else now + START_SHARE * (self.deadline - now)
         result, before = (self.quick or self.solver).solve(start.x, deadline=until), ""
@@ -197,18 +201,18 @@ class _Search:
             outcome = f"not converged ({why}): {verification.describe_failure()}"
         return _Candidate(start, result, verification, outcome)
 
-    def _hindered(self) -> _Candidate | None:
-        """Return why no posture was found at an end, with the nearest motion, or None if nothing is in the way."""
+    def _nearest(self) -> tuple[Start, list[Obstacle]]:
+        """Return the motion between the nearest postures that can be had at the ends, and what is in the way."""
         self.say("looking for what is in the way")
         obstacles, (first, last) = screen(self.problem, self.scenario.solver.seed, self.deadline)
         if obstacle := too_fast(self.problem):
             obstacles.append(obstacle)
-        if not obstacles:
-            return None
+        return Start("nearest postures", blend(self.problem, first, last)), obstacles
+
+    def _hindered(self, nearest: Start, obstacles: list[Obstacle]) -> _Candidate:
+        """Return the nearest motion and why it is no solution."""
         layout, constraints = self.problem.layout, self.problem.constraints
         nothing = Multipliers(np.zeros(layout.n_x), np.zeros(constraints.linear.shape[0]))
-        x = blend(self.problem, first, last)
-        result = SolverResult(x, nothing, np.nan, 0, False, "infeasible", 0.0, 0.0)
-        candidate = self._judge("nearest postures", result)
+        result = SolverResult(nearest.x, nothing, np.nan, 0, False, "infeasible", 0.0, 0.0)
         reasons = "; ".join(dict.fromkeys(obstacle.message for obstacle in obstacles))
-        return replace(candidate, outcome=f"infeasible: {reasons}")
+        return replace(self._judge(nearest.name, result), outcome=f"infeasible: {reasons}")

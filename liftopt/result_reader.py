@@ -59,25 +59,26 @@ def _read(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, Any], folder: Path) -> Solution:
     record = json.loads(str(attributes["record"]))
-    agents, held = agents_of(scenario), object_of(scenario)
+    urdfs = {file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "models").glob("*.urdf"))}
+    agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
     time = _array(data, "time", (len(data["time"]),))
     knots = len(time)
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
-    checks = tuple(Check(**check) for check in record["checks"])
+    checks = tuple(Check(**check | _numbers(check, value=np.nan, limit=np.inf)) for check in record["checks"])
     return Solution(
         scenario=scenario,
         outcome=str(record["outcome"]),
         time=time,
         agents=tuple(_agent(agent, data, forces[:, i]) for i, agent in enumerate(agents)),
         held=_object(held, data, forces.reshape(knots, -1)),
-        urdfs={file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "models").glob("*.urdf"))},
+        urdfs=urdfs,
         objective=float(attributes["objective"]),
         objective_terms={name: float(attributes[f"objective_{name}"]) for name in record["objective_weights"]},
         objective_weights=record["objective_weights"],
         iterations=int(attributes["iterations"]),
         intervals=int(attributes["intervals"]),
         seconds=record["seconds"],
-        starts=tuple(StartRecord(**start) for start in record["starts"]),
+        starts=tuple(StartRecord(**start | _numbers(start, objective=np.nan)) for start in record["starts"]),
         kept_start=str(record["kept_start"]),
         verification=Verification(checks, float(attributes["kkt_error"]), float(record["kkt_tolerance"])),
         notes=tuple(record["notes"]),
@@ -96,6 +97,11 @@ def _object(held: LiftedObject, data: dict[str, Any], forces: Array) -> ObjectTr
     kinds = ("", "_velocity", "_acceleration")
     pose, rate, second = (_array(data, f"{held.name}_pose{kind}", (len(forces), 6)) for kind in kinds)
     return object_trajectory(held, pose, rate, second, forces)
+
+
+def _numbers(entry: dict[str, Any], **otherwise: float) -> dict[str, float]:
+    """Return the named entries as numbers; JSON has null for those that are not finite."""
+    return {key: missing if entry[key] is None else float(entry[key]) for key, missing in otherwise.items()}
 
 
 def _array(data: dict[str, Any], name: str, shape: tuple[int, ...]) -> Array:

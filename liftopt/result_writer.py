@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import shutil
 import tempfile
 from dataclasses import asdict
 from importlib.metadata import version
@@ -24,7 +25,7 @@ Variable = tuple[tuple[str, ...], Any, str, str]
 
 
 def save(solution: Solution, out: Path) -> None:
-    """Write a solution into the folder ``out``; each file appears whole, solution.nc last.
+    """Write a solution into the folder ``out``: all files or none, each whole, solution.nc last.
 
     Raises:
         InputError: the folder or a file cannot be written.
@@ -40,9 +41,9 @@ def save(solution: Solution, out: Path) -> None:
             netcdf = Path(work) / "solution.nc"
             _write_netcdf(solution, netcdf)
             staged[out / "solution.nc"] = netcdf
-            for target, source in staged.items():
+            for source in staged.values():
                 _flush(source)
-                os.replace(source, target)
+            _move(staged, Path(work))
     except OSError as error:
         raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from error
 
@@ -57,6 +58,25 @@ def _flush(path: Path) -> None:
         os.fsync(file.fileno())
 
 
+def _move(staged: dict[Path, Path], work: Path) -> None:
+    """Move each file to its target, or none: what stood there before comes back if a move fails."""
+    before: list[tuple[Path, Path | None]] = []
+    try:
+        for i, (target, source) in enumerate(staged.items()):
+            older = work / f"older-{i}" if target.exists() else None
+            if older is not None:
+                shutil.copyfile(target, older)
+            before.append((target, older))
+            os.replace(source, target)
+    except BaseException:  # a Ctrl-C too
+        for target, older in before:
+            if older is None:
+                target.unlink(missing_ok=True)
+            else:
+                shutil.move(older, target)
+        raise
+
+
 def _write_netcdf(solution: Solution, path: Path) -> None:
     import h5netcdf
     import h5py
@@ -66,6 +86,8 @@ def _write_netcdf(solution: Solution, path: Path) -> None:
             file.dimensions[name] = len(labels)
             text = file.create_variable(name, (name,), dtype=h5py.string_dtype())
             text[:] = np.array(labels, dtype=object)
+            text.attrs["units"] = "1"
+            text.attrs["long_name"] = f"names along {name}"
         file.dimensions["time"] = len(solution.time)
         for name, (dimensions, values, unit, meaning) in _variables(solution).items():
             variable = file.create_variable(name, dimensions, data=np.asarray(values, dtype=float))
@@ -128,12 +150,20 @@ def record(solution: Solution) -> dict[str, Any]:
         "outcome": solution.outcome,
         "objective_weights": solution.objective_weights,
         "seconds": solution.seconds,
-        "starts": [asdict(start) for start in solution.starts],
+        "starts": [asdict(start) | {"objective": _finite(start.objective)} for start in solution.starts],
         "kept_start": solution.kept_start,
-        "checks": [asdict(check) for check in solution.verification.checks],
+        # JSON knows no infinity: a check that is only reported has no limit.
+        "checks": [
+            asdict(check) | {"value": _finite(check.value), "limit": _finite(check.limit)}
+            for check in solution.verification.checks
+        ],
         "kkt_tolerance": solution.verification.kkt_tolerance,
         "notes": solution.notes,
     }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def _attributes(solution: Solution) -> dict[str, Any]:
@@ -149,7 +179,7 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "max_violation": solution.verification.max_violation,
         "kkt_error": solution.verification.kkt_error,
         "versions": json.dumps(versions),
-        "record": json.dumps(record(solution)),
+        "record": json.dumps(record(solution), allow_nan=False),
     }
     attributes |= {f"objective_{name}": value for name, value in solution.objective_terms.items()}
     return attributes | {f"{name}_seconds": value for name, value in solution.seconds.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -14,28 +15,35 @@ from liftopt.multibody.table import lifted_table
 from liftopt.scenario import GraspPose, Scenario, Table
 
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
+URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 ROOM = 5.0  # [m]: half the width of the room the object may move in
 
 
-def agents_of(scenario: Scenario) -> tuple[Agent, ...]:
-    """Return the person and the robot, in the order of the object's grasp points."""
-    human, robot = scenario.human, scenario.robot
+def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tuple[Agent, ...]:
+    """Return the person and the robot, in the order of the object's grasp points.
+
+    Args:
+        scenario: who they are.
+        urdfs: file name -> text of the models if they were written before, as a solution keeps them.
+    """
+    human, robot, urdfs = scenario.human, scenario.robot, urdfs or {}
     subject = Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
     return (
-        human_agent(subject),
+        human_agent(subject, urdfs.get(URDF_FILES["human"])),
         sawyer_agent(
             standing_distance=scenario.task.standing_distance,
             base_height=robot.base_height,
             tool_length=robot.tool.length,
             tool_mass=robot.tool.mass,
+            urdf=urdfs.get(URDF_FILES["robot"]),
         ),
     )
 
 
-def object_of(scenario: Scenario) -> LiftedObject:
-    """Return the table."""
-    table = scenario.table
-    return lifted_table(mass=table.mass, depth=table.depth, width=table.width, height=table.height)
+def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> LiftedObject:
+    """Return the table; ``urdfs`` as in ``agents_of``."""
+    table, urdf = scenario.table, (urdfs or {}).get(URDF_FILES["table"])
+    return lifted_table(mass=table.mass, depth=table.depth, width=table.width, height=table.height, urdf=urdf)
 
 
 def task_of(scenario: Scenario) -> LiftTask:

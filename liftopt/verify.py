@@ -98,7 +98,8 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         if model.keep_in is not None:
             short = model.keep_in.offset - trajectory.grasp_position @ model.keep_in.normal
             checks.append(_worst("grasp in front", short[:, None], limit, "m", [model.name], motion.time))
-    return [Check(c.name + suffix, max(0.0, c.value), c.limit, c.unit, c.where) for c in checks]
+    # np.maximum lets a NaN through where max would hide it.
+    return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
 
 
 def _ends(problem: Problem, motion: Motion) -> list[Check]:
@@ -108,7 +109,8 @@ def _ends(problem: Problem, motion: Motion) -> list[Check]:
     labels += [f"{held.name} {c}" for c in OBJECT_COORDINATES]
     speed = np.hstack([*(agent.v[ends] for agent in motion.agents), held.pose_velocity[ends]])
     acceleration = np.hstack([*(agent.a[ends] for agent in motion.agents), held.pose_acceleration[ends]])
-    off = np.nan_to_num(np.abs(held.pose[ends] - np.stack([task.start, task.end])), nan=0.0)
+    wanted = np.stack([task.start, task.end])
+    off = np.where(np.isnan(wanted), 0.0, np.abs(held.pose[ends] - wanted))
     time = motion.time[ends]
     return [
         _worst("speed at the ends", np.abs(speed), AT_ENDS, "SI", labels, time),

@@ -55,6 +55,7 @@ class Result:
 
     @property
     def step(self) -> float:
+        """Time between two knots [s]."""
         return self.scenario.duration / (len(self["time"]) - 1)
 
     def force(self, who: str) -> np.ndarray:

@@ -31,6 +31,7 @@ class Solve:
     result: SolverResult
 
     def verify(self, result: SolverResult) -> Verification:
+        """Verify a result of this problem."""
         return verify(self.problem, self.spline, result, TOLERANCE)
 
     def with_control(self, column: int, change: float, row: int = KNOT) -> SolverResult:
@@ -92,11 +93,13 @@ def test_a_changed_force_tips_the_balance(solve: Solve, axis: int, row: str) -> 
 def test_a_squeeze_beyond_the_cap_is_seen_though_the_object_stays_in_balance(solve: Solve) -> None:
     control, _ = solve.problem.unpack(solve.result.x)
     pose = solve.problem.mesh.basis[0][KNOT] @ control[:, -6:]
-    along = np.array([
-        np.cos(pose[4]) * np.cos(pose[5]),
-        np.sin(pose[5]) * np.cos(pose[3]) + np.cos(pose[5]) * np.sin(pose[3]) * np.sin(pose[4]),
-        np.sin(pose[3]) * np.sin(pose[5]) - np.cos(pose[3]) * np.sin(pose[4]) * np.cos(pose[5]),
-    ])  # the body's x axis, Rx Ry Rz e_x
+    along = np.array(
+        [
+            np.cos(pose[4]) * np.cos(pose[5]),
+            np.sin(pose[5]) * np.cos(pose[3]) + np.cos(pose[5]) * np.sin(pose[3]) * np.sin(pose[4]),
+            np.sin(pose[3]) * np.sin(pose[5]) - np.cos(pose[3]) * np.sin(pose[4]) * np.cos(pose[5]),
+        ]
+    )  # the body's x axis, Rx Ry Rz e_x
     verification = solve.verify(solve.with_force(300.0 * np.concatenate([along, -along])))
     check = verification.check("grasp force cap")
     assert not check.passed
@@ -174,7 +177,7 @@ def test_a_solver_that_was_fed_a_wrong_robot_is_found_out(solve: Solve) -> None:
     """Oracle: the exported models. The kernels' parameters are not theirs: the solver converges to another lift."""
     team = solve.problem.team
     human, robot, table = team.topologies
-    wrong = replace(robot, parameters=robot.parameters * 1.01)
+    wrong = replace(robot, entries=robot.entries * 1.01)
     fooled = replace(solve.problem, team=replace(team, topologies=(human, wrong, table)))
     result = Ipopt(fooled).solve(solve.result.x, deadline=time.monotonic() + 60.0)
     verification = solve.verify(result)

@@ -98,7 +98,8 @@ def _screen_end(
         who = team.agents[worst].name
         text = f"out of reach at the {name} of the lift: the {who}'s grasp stays {gaps[worst]:.3f} m short"
         return Obstacle("closure", who, float(gaps[worst]), "m", text), near
-    return _strength(problem, name, pose, nearest, deadline) or (None, near)
+    seeds = [nearest, *(seed_coordinates(problem, pose, rng) for _ in range(SEEDS - 1))]
+    return _strength(problem, name, pose, seeds, deadline) or (None, near)
 
 
 def _reach(team: Team, task: LiftTask, pose: Array, seed: Array) -> tuple[Array, Array]:
@@ -165,35 +166,44 @@ class _Gaps:
 
 
 def _strength(
-    problem: Problem, name: str, pose: Array, seed: Array, deadline: float
-) -> tuple[Obstacle, Posture] | None:
-    """Find by bisection how many times stronger agents and grasps must be to hold still there; None if not at all."""
-    if _posture_with(problem, pose, seed, 1.0, deadline):
-        return None
-    weak, strong, held = 1.0, 1.0, None
+    problem: Problem, name: str, pose: Array, seeds: list[Array], deadline: float
+) -> tuple[Obstacle | None, Posture] | None:
+    """Find by bisection how many times stronger agents and grasps must be to hold still there.
+
+    Returns the posture that holds, with an obstacle if that takes more than the limits; None if nothing helps.
+    """
+    weak, strong = 1.0, 1.0
+    held = _hold(problem, pose, seeds, 1.0, deadline)
+    if held:
+        return None, held
     while held is None:
         weak, strong = strong, 2 * strong
         if strong > STRONGEST or time.monotonic() > deadline:
             return None
-        held = _posture_with(problem, pose, seed, strong, deadline)
+        held = _hold(problem, pose, seeds, strong, deadline)
     while strong / weak > 1.01 and time.monotonic() < deadline:
         middle = (weak * strong) ** 0.5
-        posture = _posture_with(problem, pose, seed, middle, deadline)
+        # What holds with more strength is the best seed for less.
+        posture = _hold(problem, pose, [held.coordinates, *seeds], middle, deadline)
         weak, strong, held = (weak, middle, posture) if posture else (middle, strong, held)
+    if posture := _hold(problem, pose, [held.coordinates], 1.0, deadline):
+        return None, posture
     constraint, who = _tightest(problem, held)
     what = "torque limit of" if constraint == "torque" else "grasp force cap of"
-    text = f"too weak at the {name} of the lift: holding still needs {strong:.2f} times the {what} {who}"
+    text = f"too weak at the {name} of the lift: holding still needs about {strong:.2f} times the {what} {who}"
     return Obstacle(constraint, who, strong, "times the limit", text), held
 
 
-def _posture_with(problem: Problem, pose: Array, seed: Array, factor: float, deadline: float) -> Posture | None:
+def _hold(problem: Problem, pose: Array, seeds: list[Array], factor: float, deadline: float) -> Posture | None:
+    """Return a posture that holds the object with ``factor`` times the strength, or None if no seed leads to one."""
     agents = []
     for agent in problem.team.agents:
         limits = agent.limits
         stronger = replace(limits, tau_lower=factor * limits.tau_lower, tau_upper=factor * limits.tau_upper)
         agents.append(replace(agent, limits=stronger))
     task = replace(problem.task, max_grasp_force=factor * problem.task.max_grasp_force)
-    return PostureSolver(replace(problem.team, agents=tuple(agents)), task).solve(pose, seed, deadline)
+    postures = PostureSolver(replace(problem.team, agents=tuple(agents)), task)
+    return next((found for seed in seeds if (found := postures.solve(pose, seed, deadline))), None)
 
 
 def _tightest(problem: Problem, posture: Posture) -> tuple[str, str]:

@@ -50,7 +50,7 @@ class Posture:
 
 def posture_of(solution: Solution) -> Posture:
     """Return the posture of the person at every time of ``solution``."""
-    agent, human = agents_of(solution.scenario)[0], solution.agents[0]
+    agent, human = agents_of(solution.scenario, solution.urdfs)[0], solution.agents[0]
     q = {name: np.degrees(human.q[:, i]) for i, name in enumerate(human.joint_names)}
     shoulder, elbow, wrist = _in_trunk(agent, human.q)
     arm = (elbow - shoulder) / np.linalg.norm(elbow - shoulder, axis=1, keepdims=True)

@@ -24,7 +24,8 @@ OUT_TO_THE_SIDE = 0.05  # m from the shoulder joint to the side of the body
 
 ASSUMPTIONS = (
     f'"Neutral" wrist, "erect" trunk and "not bent from the midline" mean within {NEUTRAL:g}°; a turn or side bend of '
-    f"the trunk counts from {TURNED:g}°. Leaning back counts like leaning forward.",
+    f"the trunk counts from {TURNED:g}°. Leaning back counts like leaning forward. An erect trunk scores 1, as on the "
+    "worksheets in use; the 1993 paper gives 1 to a supported seat only.",
     "Flexion of the upper arm is measured against the trunk in the trunk's sagittal plane; it counts as abducted from "
     f"{ABDUCTED:g}° out of that plane. A raised shoulder is not in the model and is not scored; no support of the arm.",
     f"The lower arm works across the midline where the wrist is past it, out to the side where the wrist is more than "

@@ -37,7 +37,10 @@ def strength_use(solution: Solution) -> tuple[StrengthUse, ...]:
     tau = human.tau[:, human.moving]
     shares = np.where(tau >= 0.0, tau / human.limits.tau_upper, tau / human.limits.tau_lower)
     names = np.array(human.joint_names)[human.moving]
-    return tuple(_use(str(name).removeprefix("human_"), share, solution.time) for name, share in zip(names, shares.T, strict=True))
+    return tuple(
+        _use(str(name).removeprefix("human_"), share, solution.time)
+        for name, share in zip(names, shares.T, strict=True)
+    )
 
 
 def _use(joint: str, share: Array, time: Array) -> StrengthUse:

@@ -79,20 +79,16 @@ def human_limits(sex: Sex) -> JointLimits:
     )
 
 
-def human_agent(subject: Subject) -> Agent:
+def human_agent(subject: Subject, urdf: str | None = None) -> Agent:
     """Return the subject as an agent: feet at the world origin, facing +X, holding at ``human_grasp``.
 
     The grasp point must stay in front of the base of the spine (eq. 14), which stands at X = 0.
+
+    Args:
+        subject: who it is.
+        urdf: the subject's URDF if it was written before; None writes it.
     """
-    chain, limits = human_chain(subject), human_limits(subject.sex)
-    shapes = shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
-    effort = np.maximum(-limits.tau_lower, limits.tau_upper)
-    bounds = dict.fromkeys(VIRTUAL, HELD) | {
-        item.joint: JointBounds(*map(float, values))
-        for item, *values in zip(RANGES, limits.q_lower, limits.q_upper, effort, limits.velocity, strict=True)
-    }
-    root = FixedLink("human_base", "world", human_root())
-    text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=GRASP))
+    limits, text = human_limits(subject.sex), urdf or human_urdf(subject)
     return Agent(
         name=NAME,
         urdf=text,
@@ -103,3 +99,16 @@ def human_agent(subject: Subject) -> Agent:
         posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
         keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.0),
     )
+
+
+def human_urdf(subject: Subject) -> str:
+    """Return the subject's URDF."""
+    chain, limits = human_chain(subject), human_limits(subject.sex)
+    shapes = shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
+    effort = np.maximum(-limits.tau_lower, limits.tau_upper)
+    bounds = dict.fromkeys(VIRTUAL, HELD) | {
+        item.joint: JointBounds(*map(float, values))
+        for item, *values in zip(RANGES, limits.q_lower, limits.q_upper, effort, limits.velocity, strict=True)
+    }
+    root = FixedLink("human_base", "world", human_root())
+    return urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=GRASP))

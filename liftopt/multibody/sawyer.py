@@ -84,7 +84,9 @@ def sawyer_limits() -> JointLimits:
     )
 
 
-def sawyer_agent(*, standing_distance: float, base_height: float, tool_length: float, tool_mass: float) -> Agent:
+def sawyer_agent(
+    *, standing_distance: float, base_height: float, tool_length: float, tool_mass: float, urdf: str | None = None
+) -> Agent:
     """Return Sawyer as an agent: on its pedestal at X = ``standing_distance``, facing the human (-X).
 
     It holds at ``robot_grasp``, the tool's tip; with a tool of length and mass zero, the bare flange.
@@ -94,6 +96,7 @@ def sawyer_agent(*, standing_distance: float, base_height: float, tool_length: f
         base_height: of the arm's base above the floor, l9 [m].
         tool_length: from the flange to the grasp point [m].
         tool_mass: of the gripper [kg].
+        urdf: this robot's URDF if it was written before; None writes it.
 
     Raises:
         InputError: a value is out of range; its key is ``task.standing_distance``, ``robot.base_height``,
@@ -101,13 +104,26 @@ def sawyer_agent(*, standing_distance: float, base_height: float, tool_length: f
     """
     checked_number("task.standing_distance", standing_distance, 0.5, 4.0, "m")
     _check(base_height, tool_length, tool_mass)
+    text = urdf or _urdf(standing_distance, base_height, tool_length, tool_mass)
+    return Agent(
+        name=NAME,
+        urdf=text,
+        model=load_model(text),
+        pinned=tuple(joint_name(NAME, row) for row in VIRTUAL),
+        grasp_frame=GRASP,
+        limits=sawyer_limits(),
+        posture=np.array(POSTURE),
+    )
+
+
+def _urdf(standing_distance: float, base_height: float, tool_length: float, tool_mass: float) -> str:
     chain, limits = _bare_chain(base_height, tool_length), sawyer_limits()
     root = sawyer_root(standing_distance)
     moves = zip(limits.q_lower, limits.q_upper, limits.tau_upper, limits.velocity, strict=True)
     bounds = dict.fromkeys(VIRTUAL, HELD) | {
         row: JointBounds(*map(float, values)) for row, values in zip(MOVING, moves, strict=True)
     }
-    text = urdf_text(
+    return urdf_text(
         chain_robot(
             chain,
             root=_stand(chain, root, base_height),
@@ -116,15 +132,6 @@ def sawyer_agent(*, standing_distance: float, base_height: float, tool_length: f
             grasp=GRASP,
             attached=_tool(chain, tool_length, tool_mass),
         )
-    )
-    return Agent(
-        name=NAME,
-        urdf=text,
-        model=load_model(text),
-        pinned=tuple(joint_name(NAME, row) for row in VIRTUAL),
-        grasp_frame=GRASP,
-        limits=limits,
-        posture=np.array(POSTURE),
     )
 
 

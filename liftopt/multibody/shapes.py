@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import yourdfpy
 
 from liftopt.multibody.dh import Array
+
+if TYPE_CHECKING:
+    import yourdfpy
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,8 @@ class Capsule:
 
     def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
         """Return the cylinder and its two end spheres."""
+        import yourdfpy
+
         axis = self.end - self.start
         length = float(np.linalg.norm(axis))
         middle = _turned_to(axis / length, (self.start + self.end) / 2.0)
@@ -78,6 +82,8 @@ class Box:
 
     def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
         """Return the box."""
+        import yourdfpy
+
         return [(self.name, self.placement, yourdfpy.Geometry(box=yourdfpy.Box(np.round(self.size, 6))))]
 
 
@@ -97,6 +103,8 @@ class Cylinder:
 
     def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
         """Return the cylinder."""
+        import yourdfpy
+
         axis = self.end - self.start
         length = float(np.linalg.norm(axis))
         middle = _turned_to(axis / length, (self.start + self.end) / 2.0)

@@ -35,7 +35,7 @@ def table_chain(*, mass: float, depth: float, width: float, height: float) -> DH
     return DHChain(NAME, rows, (*virtual, table_body(mass, (width, height, depth))))
 
 
-def lifted_table(*, mass: float, depth: float, width: float, height: float) -> LiftedObject:
+def lifted_table(*, mass: float, depth: float, width: float, height: float, urdf: str | None = None) -> LiftedObject:
     """Return the table as a free body; its frame is at its centre of mass and aligned with the world at zero.
 
     The grasp points are in the middle of the two bottom edges: the human's at X = -depth/2, the robot's at +depth/2.
@@ -45,6 +45,7 @@ def lifted_table(*, mass: float, depth: float, width: float, height: float) -> L
         depth: along X, from the human to the robot [m].
         width: along Y [m].
         height: thickness of the top, along Z [m].
+        urdf: this table's URDF if it was written before; None writes it.
 
     Raises:
         InputError: a value is out of range; its key is ``table.mass``, ``table.depth``...
@@ -52,6 +53,8 @@ def lifted_table(*, mass: float, depth: float, width: float, height: float) -> L
     _check(mass, depth, width, height)
     size = (float(depth), float(width), float(height))
     edges = {"grasp_human": -depth / 2.0, "grasp_robot": depth / 2.0}
+    if urdf is not None:
+        return LiftedObject(NAME, urdf, load_free_model(urdf), tuple(edges))
     grasps = [FixedLink(name, NAME, translation(x, 0.0, -height / 2.0)) for name, x in edges.items()]
     top = box_at("top", WOOD, np.zeros(3), size)
     text = urdf_text(body_robot(NAME, table_body(mass, size), (top,), grasps))

@@ -6,13 +6,17 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from io import BytesIO
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
-import yourdfpy
 
 from liftopt.multibody.dh import Array, BodyInertia, DHChain, frame_transforms, row_origin, row_tail
 from liftopt.multibody.shapes import Shape
+
+# Writing URDFs takes yourdfpy, whose import takes longer than reading a result: it is imported where it is used.
+if TYPE_CHECKING:
+    import yourdfpy
 
 # Frames and bodies are written with all their digits; where a shape is drawn, to the micrometre.
 SHAPE_DECIMALS = 6
@@ -100,6 +104,8 @@ def chain_robot(
         grasp: name of the massless link at the end of the chain, at the last DH frame.
         attached: further fixed links.
     """
+    import yourdfpy
+
     links, joints = [yourdfpy.Link("world")], []
     parent, tail = root.name, np.eye(4)
     for row, body in zip(chain.rows, chain.inertias, strict=True):
@@ -127,11 +133,15 @@ def chain_robot(
 
 def body_robot(name: str, body: BodyInertia, shapes: Sequence[Shape], fixed: Sequence[FixedLink]) -> yourdfpy.Robot:
     """Return the URDF description of one free body whose frame is the link ``name``."""
+    import yourdfpy
+
     return with_fixed_links(yourdfpy.Robot(f"liftopt_{name}", links=[_link(name, body, shapes)]), fixed)
 
 
 def with_fixed_links(robot: yourdfpy.Robot, fixed: Sequence[FixedLink]) -> yourdfpy.Robot:
     """Return ``robot`` with more links that do not move."""
+    import yourdfpy
+
     links = [_link(item.name, item.body, item.shapes) for item in fixed]
     joints = [
         yourdfpy.Joint(f"{item.name}_fixed", type="fixed", parent=item.parent, child=item.name, origin=item.placement)
@@ -142,6 +152,8 @@ def with_fixed_links(robot: yourdfpy.Robot, fixed: Sequence[FixedLink]) -> yourd
 
 def urdf_text(robot: yourdfpy.Robot) -> str:
     """Return the URDF; numbers are written with all their digits, so the same robot gives the same bytes."""
+    import yourdfpy
+
     buffer = BytesIO()
     yourdfpy.URDF(robot, build_scene_graph=False, load_meshes=False).write_xml_file(buffer)
     return _MINUS_ZERO.sub("0.0", buffer.getvalue().decode("ascii"))
@@ -158,6 +170,8 @@ def load_free_model(text: str) -> pin.Model:
 
 
 def _link(name: str, body: BodyInertia, shapes: Sequence[Shape]) -> yourdfpy.Link:
+    import yourdfpy
+
     link = yourdfpy.Link(name)
     if body.mass > 0.0:
         origin = np.eye(4)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.summary import joint_meaning
 from liftopt.trajectory import AgentTrajectory
 
 Array = npt.NDArray[np.float64]
@@ -62,17 +63,21 @@ class JointCurve:
         joint: short name, ``"Q7"``.
         label: for a reader, DH name included.
         q: (K,) angle [deg].
+        v: (K,) speed [deg/s].
         tau: (K,) torque [Nm], positive in the positive direction of ``q``.
         q_limits, tau_limits: lower and upper limit of either.
+        v_limit: of the speed, either way.
         share: (K,) torque as a fraction of the limit in its direction.
     """
 
     joint: str
     label: str
     q: Array
+    v: Array
     tau: Array
     q_limits: tuple[float, float]
     tau_limits: tuple[float, float]
+    v_limit: float
     share: Array
 
 
@@ -81,13 +86,14 @@ def human_curves(human: AgentTrajectory) -> tuple[JointCurve, ...]:
     return tuple(_curve(human, joint.joint, joint.label, joint.sign) for joint in ANATOMY)
 
 
-def robot_curves(robot: AgentTrajectory, meaning: dict[str, str]) -> tuple[JointCurve, ...]:
-    """Return the moving joints of the robot as in Table 3, with the manufacturer's names from ``meaning``."""
-    names = [name.removeprefix(f"{robot.name}_") for name in np.array(robot.joint_names)[robot.moving]]
-    return tuple(
-        _curve(robot, name, f"{name} ({meaning[name]})".replace("-", "\N{MINUS SIGN}") if name in meaning else name, 1)
-        for name in names
-    )
+def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
+    """Return the moving joints of the robot ``model`` as in Table 3, with the manufacturer's names beside them."""
+    curves = []
+    for name in np.array(robot.joint_names)[robot.moving]:
+        joint = str(name).removeprefix(f"{robot.name}_")
+        meaning = joint_meaning(robot.name, model, joint).replace("-", "\N{MINUS SIGN}")
+        curves.append(_curve(robot, joint, f"{joint} ({meaning})" if meaning else joint, +1))
+    return tuple(curves)
 
 
 def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCurve:
@@ -101,8 +107,10 @@ def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCu
         joint=joint,
         label=label,
         q=sign * np.degrees(agent.q[:, column]),
+        v=sign * np.degrees(agent.v[:, column]),
         tau=sign * tau,
         q_limits=(float(min(sign * q)), float(max(sign * q))),
         tau_limits=(min(sign * lower, sign * upper), max(sign * lower, sign * upper)),
+        v_limit=float(np.degrees(limits.velocity[row])),
         share=share,
     )

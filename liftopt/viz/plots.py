@@ -76,7 +76,9 @@ PLOTS: tuple[Plot, ...] = (
     Plot("object_motion", "Height, tilt and speed of the object.", object_motion),
     Plot("ground_reaction", "What the ground does to the person.", ground_reaction),
     Plot("strength_used", "Share of the person's strength that each joint uses over the lift.", strength_used),
-    Plot("posture_score", "RULA score of the person's posture and hand force over the lift, by its parts.", posture_score),
+    Plot(
+        "posture_score", "RULA score of the person's posture and hand force over the lift, by its parts.", posture_score
+    ),
 )
 
 

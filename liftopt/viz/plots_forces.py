@@ -1,4 +1,4 @@
-"""Grasp forces with the load share (Fig. 15 and its counterpart for the robot), ground reaction, the object's motion."""
+"""Grasp forces with the load share (Fig. 15, and the same for the robot), ground reaction, the object's motion."""
 
 from __future__ import annotations
 
@@ -9,39 +9,41 @@ from matplotlib.figure import Figure
 from liftopt.summary import FREE_FALL
 from liftopt.trajectory import AgentTrajectory
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, WIDTH, Array, draw, percent, time_axes
+from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, Array, draw, legend_above, panels, percent, time_axes
 
 COMPONENTS = ("x, towards the robot", "y, to the person's left", "z, up")
-
 
 
 def grasp_forces(lift: Lift) -> Figure:
     """Return the force of person and robot on the object by component, and each one's share of the load."""
     solution = lift.dense
-    figure = Figure(figsize=(WIDTH, 7.0), layout="constrained")
-    human, robot, share = grid = figure.subplots(3, 1, sharex=True)
+    figure, grid = panels(3, height=1.75)
+    human, robot, share = (line[0] for line in grid)
     cap = solution.scenario.limits.max_grasp_force
     for axes, agent in zip((human, robot), solution.agents, strict=True):
         _components(axes, lift, agent, cap)
     lows, highs = zip(human.get_ylim(), robot.get_ylim(), strict=True)
-    for axes in (human, robot):  # one scale for both, room for the legend above the curves
-        axes.set_ylim(min(lows), max(highs) + 0.25 * (max(highs) - min(lows)))
-    human.legend(ncols=4, loc="upper right")
+    for axes in (human, robot):  # one scale for both
+        axes.set_ylim(min(lows), max(highs))
+        legend_above(axes, 4)
     for agent, part, line in zip(solution.agents, shares(solution.agents), LINES, strict=False):
         draw(share, solution.time, 100 * part, line, agent.name, lift.factor)
     share.axhline(50.0, color=FAINT, linewidth=0.8, zorder=1)
-    share.set_ylim(*_at_least(share.get_ylim(), 0.0, 115.0))
+    low, high = share.get_ylim()
+    share.set_ylim(min(low, 0.0), max(high, 100.0))
     share.set(title="Load share: part of the vertical grasp force", ylabel="share of the load [%]")
-    share.legend(ncols=2, loc="upper right")
-    time_axes(figure, [[axes] for axes in grid], float(solution.time[-1]))
+    legend_above(share, 2)
+    if low >= 0.0 and high <= 100.0:
+        share.set_yticks(range(0, 101, 25))
+    time_axes(grid, float(solution.time[-1]))
     return figure
 
 
 def ground_reaction(lift: Lift) -> Figure:
     """Return what the ground does to the person: force, and moment at the feet."""
     solution = lift.dense
-    figure = Figure(figsize=(WIDTH, 4.2), layout="constrained")
-    force, moment = grid = figure.subplots(2, 1, sharex=True)
+    figure, grid = panels(2, height=1.4)
+    force, moment = (line[0] for line in grid)
     change = solution.ground_reaction_force.copy()
     change[:, 2] -= change[0, 2]
     weight = float(solution.ground_reaction_force[0, 2])
@@ -52,18 +54,18 @@ def ground_reaction(lift: Lift) -> Figure:
         draw(moment, solution.time, solution.ground_reaction_moment[:, i], line, label, lift.factor)
     force.set(title="Ground reaction force on the person", ylabel="force [N]")
     moment.set(title="Ground reaction moment at the feet", ylabel="moment [Nm]")
-    for axes in grid:
+    for axes in (force, moment):
         axes.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
-        axes.legend(ncols=3, loc="best", fontsize=7.5)
-    time_axes(figure, [[axes] for axes in grid], float(solution.time[-1]))
+        legend_above(axes, 3)
+    time_axes(grid, float(solution.time[-1]))
     return figure
 
 
 def object_motion(lift: Lift) -> Figure:
     """Return the object's height, its pitch and yaw, and its speed."""
     solution, pose = lift.dense, lift.dense.held.pose
-    figure = Figure(figsize=(WIDTH, 5.0), layout="constrained")
-    height, turn, speed = grid = figure.subplots(3, 1, sharex=True)
+    figure, grid = panels(3, height=1.1)
+    height, turn, speed = (line[0] for line in grid)
     draw(height, solution.time, pose[:, 2], LINES[0], knots=lift.factor)
     height.set(title=f"Height of the {solution.held.name}'s centre of mass", ylabel="height [m]")
     limits = solution.scenario.limits
@@ -73,10 +75,11 @@ def object_motion(lift: Lift) -> Figure:
     ):
         draw(turn, solution.time, np.degrees(pose[:, column]), line, f"{name} (limit ±{limit:g})", lift.factor)
     turn.set(title="Tilt", ylabel="angle [deg]")
-    turn.legend(ncols=2, loc="best", fontsize=7.5)
+    turn.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
+    legend_above(turn, 2, 0.3)
     draw(speed, solution.time, np.linalg.norm(solution.held.velocity[:, :3], axis=1), LINES[0], knots=lift.factor)
     speed.set(title="Speed of its centre of mass", ylabel="speed [m/s]")
-    time_axes(figure, [[axes] for axes in grid], float(solution.time[-1]))
+    time_axes(grid, float(solution.time[-1]))
     return figure
 
 
@@ -103,7 +106,3 @@ def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> N
         f"at most {magnitude.max():.0f} N (cap {cap:g} N)"
     )
     axes.set_ylabel("force [N]")
-
-
-def _at_least(limits: tuple[float, float], low: float, high: float) -> tuple[float, float]:
-    return min(limits[0], low), max(limits[1], high)

@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from liftopt.summary import joint_meaning
 from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, WIDTH, Array, Line, draw, percent, time_axes
+from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Array, Line, draw, panels, percent, time_axes
 
 Quantity = Literal["angle", "torque"]
 UNIT = {"angle": "deg", "torque": "Nm"}
@@ -22,8 +21,7 @@ ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
 
 def human_arm(lift: Lift) -> Figure:
     """Return shoulder and elbow flexion: angle and torque (the predicted side of Figs. 13 and 14)."""
-    figure = Figure(figsize=(WIDTH, 5.0), layout="constrained")
-    grid = figure.subplots(2, 2, sharex=True)
+    figure, grid = panels(2, 2, height=1.7)
     curves = {curve.joint: curve for curve in human_curves(lift.dense.agents[0])}
     for row, joint in enumerate(ARM):
         _panel(grid[row][0], lift, curves[joint], "angle", LINES[0])
@@ -31,7 +29,7 @@ def human_arm(lift: Lift) -> Figure:
         for axes, quantity in zip(grid[row], ("angle", "torque"), strict=True):
             axes.set_title(f"{curves[joint].label}: {quantity}")
             axes.set_ylabel(f"{quantity} [{UNIT[quantity]}], flexion +")
-    time_axes(figure, [list(line) for line in grid], float(lift.dense.time[-1]))
+    time_axes(grid, float(lift.dense.time[-1]))
     return figure
 
 
@@ -56,27 +54,23 @@ def robot_torques(lift: Lift) -> Figure:
 
 
 def _robot(lift: Lift) -> tuple[JointCurve, ...]:
-    model = lift.dense.scenario.robot.model
-    names = {f"Q{i}": joint_meaning("robot", model, f"Q{i}") for i in range(1, 8)}
-    return robot_curves(lift.dense.agents[1], {joint: meaning for joint, meaning in names.items() if meaning})
+    return robot_curves(lift.dense.agents[1], lift.dense.scenario.robot.model)
 
 
 def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figure:
     """Return one small panel a joint, two beside each other."""
     columns = 2
     rows = -(-len(curves) // columns)
-    figure = Figure(figsize=(WIDTH, 1.45 * rows + 0.6), layout="constrained")
-    grid = figure.subplots(rows, columns, sharex=True, squeeze=False)
-    panels = [list(line) for line in grid]
+    figure, grid = panels(rows, columns, height=1.1)
     for index, curve in enumerate(curves):
         axes = grid[index // columns][index % columns]
         _panel(axes, lift, curve, quantity, LINES[0] if quantity == "angle" else LINES[1])
         axes.set_title(curve.label)
         axes.set_ylabel(f"{quantity} [{UNIT[quantity]}]")
     if len(curves) % columns:
-        _explain(panels[-1].pop())
+        _explain(grid[-1].pop())
         grid[-2][-1].tick_params(labelbottom=True)
-    time_axes(figure, panels, float(lift.dense.time[-1]))
+    time_axes(grid, float(lift.dense.time[-1]))
     return figure
 
 
@@ -124,7 +118,7 @@ def _mark_limits(axes: Axes, time: Array, values: Array, limits: tuple[float, fl
     bottom, top = axes.get_ylim()
     for limit, beyond in ((limits[0], bottom), (limits[1], top)):
         if bottom < limit < top:
-            axes.axhline(limit, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)), zorder=1)
+            axes.axhline(limit, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)), zorder=1.5)
             axes.axhspan(limit, beyond, facecolor="white", edgecolor=FAINT, hatch="////", linewidth=0, zorder=1)
         at = np.abs(values - limit) <= 1e-3 * (limits[1] - limits[0])
         axes.plot(percent(time), np.where(at, limit, np.nan), color=VERMILION, linewidth=5.0, alpha=0.6)
@@ -133,5 +127,3 @@ def _mark_limits(axes: Axes, time: Array, values: Array, limits: tuple[float, fl
 
 def _signed(value: float) -> str:
     return f"{value + 0.0:.3g}".replace("-", "\N{MINUS SIGN}")  # no negative zero
-
-

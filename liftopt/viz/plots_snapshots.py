@@ -17,8 +17,9 @@ from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import BLUE, INK, VERMILION, Array
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
-CIRCLE = 40  # points of a drawn circle
-METRES_A_NEWTON = 0.01  # length of a force arrow
+CIRCLE = 24  # points of a drawn circle
+KEY_LENGTH, LONGEST = 0.2, 0.6  # of the arrow that the key shows, and of any [m]
+KEY_FORCES = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)  # N
 ARROWS = ((BLUE, "-|>"), (VERMILION, "->"))  # color and head, by agent
 HEADROOM = 0.15  # [m]
 
@@ -41,10 +42,12 @@ class Outline:
 def snapshots(lift: Lift) -> Figure:
     """Return the lift at five moments, side by side."""
     solution = lift.dense
-    figure = Figure(figsize=(12.0, 3.0), layout="constrained")
+    figure = Figure(figsize=(12.0, 2.6))
+    figure.subplots_adjust(left=0.005, right=0.995, top=0.9, bottom=0.13, wspace=0.02)
     panels = figure.subplots(1, len(MOMENTS), sharex=True, sharey=True)
     path = solution.held.grasp_position[:, 0]
     bodies = _bodies(lift)
+    key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in solution.agents))
     for axes, moment in zip(panels, MOMENTS, strict=True):
         k = round(moment * (len(solution.time) - 1))
         outlines = [outline for model, visual, q in bodies for outline in _outlines(model, visual, q[k])]
@@ -52,9 +55,9 @@ def snapshots(lift: Lift) -> Figure:
             axes.add_patch(Polygon(part.polygon, facecolor=part.color, edgecolor=INK, linewidth=0.35))
         axes.plot(path[: k + 1, 0], path[: k + 1, 2], color=INK, linewidth=1.0, linestyle=(0, (1, 1)), zorder=3)
         for agent, (color, head) in zip(solution.agents, ARROWS, strict=True):
-            _arrow(axes, agent.grasp_position[k], agent.grasp_force[k], color, head)
+            _arrow(axes, agent.grasp_position[k], KEY_LENGTH / key * agent.grasp_force[k], color, head)
         axes.axhline(0.0, color=INK, linewidth=1.0)
-        axes.set_title(f"{100 * moment:.0f} %   {solution.time[k]:.2f} s", loc="center")
+        axes.set_title(f"{100 * moment:.0f} %, {solution.time[k]:.2f} s", loc="center", fontsize=11)
         axes.grid(False)
         axes.set_aspect("equal")
         axes.spines[["left", "bottom"]].set_visible(False)
@@ -62,31 +65,40 @@ def snapshots(lift: Lift) -> Figure:
     reach = float(solution.agents[1].grasp_position[:, 0].max())
     panels[0].set_xlim(-0.35, max(reach, solution.scenario.task.standing_distance) + 0.4)
     panels[0].set_ylim(-0.16, max(solution.scenario.human.stature, 1.7) + HEADROOM)
-    _key(figure, panels[0], solution.held.name)
+    _key(figure, panels[0], key, solution.held.name)
     return figure
 
 
-def _key(figure: Figure, axes: Axes, held: str) -> None:
+def _key_force(largest: float) -> float:
+    """Return the force [N] whose arrow is ``KEY_LENGTH`` long, so that no arrow is longer than ``LONGEST``."""
+    return next((key for key in KEY_FORCES if largest * KEY_LENGTH <= LONGEST * key), KEY_FORCES[-1])
+
+
+def _key(figure: Figure, axes: Axes, force: float, held: str) -> None:
     """Say how long an arrow is, below the first panel, and what the arrows and the dotted line are."""
-    left, length = axes.get_xlim()[0] + 0.05, 20 * METRES_A_NEWTON
+    left, length = axes.get_xlim()[0] + 0.05, KEY_LENGTH
     axes.plot([left, left + length], [-0.1, -0.1], color=INK, linewidth=1.2, marker="|", markersize=6)
-    axes.text(left + length + 0.05, -0.1, "20 N", va="center", fontsize=8, color=INK)
-    figure.supxlabel(
+    axes.text(left + length + 0.05, -0.1, f"{force:g} N", va="center", fontsize=10, color=INK)
+    words = (
         f"Seen from the person's right. Arrows: force on the {held} by the person (blue, filled head) and by the robot "
-        "(red, open head). Dotted: path of the hand.",
-        fontsize=8.5, color=INK,
-    )  # fmt: skip
+        "(red, open head). Dotted: path of the hand."
+    )
+    figure.supxlabel(words, fontsize=10.5, color=INK, y=0.01)
 
 
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
     """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
     solution = lift.dense
-    models = [*agents_of(solution.scenario), object_of(solution.scenario)]
-    held = np.hstack([solution.held.pose[:, :3], solution.held.quaternion])
-    motions = [*(agent.q for agent in solution.agents), held]
+    held = object_of(solution.scenario, solution.urdfs)
+    poses = np.hstack([solution.held.pose[:, :3], solution.held.quaternion])
+    models = [
+        *((agent.model, agent.urdf) for agent in agents_of(solution.scenario, solution.urdfs)),
+        (held.model, held.urdf),
+    ]
+    motions = [*(agent.q for agent in solution.agents), poses]
     return [
-        (model.model, pin.buildGeomFromUrdfString(model.model, model.urdf, pin.GeometryType.VISUAL), q)
-        for model, q in zip(models, motions, strict=True)
+        (model, pin.buildGeomFromUrdfString(model, urdf, pin.GeometryType.VISUAL), q)
+        for (model, urdf), q in zip(models, motions, strict=True)
     ]
 
 
@@ -111,16 +123,17 @@ def _surface(geometry: object) -> Array:
     angle = np.linspace(0.0, 2 * np.pi, CIRCLE, endpoint=False)
     ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(CIRCLE)], axis=1) * radius
     if length is not None:
-        return np.concatenate([ring - [0.0, 0.0, length], ring + [0.0, 0.0, length]])
+        end = np.array([0.0, 0.0, length])
+        return np.concatenate([ring - end, ring + end])
     latitudes = np.linspace(-np.pi / 2, np.pi / 2, 2 * (CIRCLE // 4) + 1)
-    return np.concatenate([ring * np.cos(t) + [0.0, 0.0, radius * np.sin(t)] for t in latitudes])
+    pole = np.array([0.0, 0.0, radius])
+    return np.concatenate([ring * np.cos(t) + pole * np.sin(t) for t in latitudes])
 
 
-def _arrow(axes: Axes, point: Array, force: Array, color: str, head: str) -> None:
-    tip = point + METRES_A_NEWTON * force
-    axes.add_patch(
-        FancyArrowPatch(
-            (point[0], point[2]), (tip[0], tip[2]), arrowstyle=head, mutation_scale=9, color=color, linewidth=2.0,
-            shrinkA=0, shrinkB=0, zorder=5,
-        )  # fmt: skip
-    )
+def _arrow(axes: Axes, point: Array, along: Array, color: str, head: str) -> None:
+    tip = point + along
+    arrow = FancyArrowPatch(
+        (point[0], point[2]), (tip[0], tip[2]), arrowstyle=head, mutation_scale=9, color=color, linewidth=2.0,
+        shrinkA=0, shrinkB=0, zorder=5,
+    )  # fmt: skip
+    axes.add_patch(arrow)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -12,20 +12,19 @@ from liftopt.multibody.dh import rotation_z, translation
 from liftopt.multibody.subject import Subject
 from liftopt.solution import Solution
 from liftopt.viz.playback import Playback
-from liftopt.viz.scene_arrow import arrow_commands, arrow_tracks
+from liftopt.viz.scene_arrow import arrow_commands, arrow_values
+from liftopt.viz.scene_commands import Command, clip, place, set_object
 from liftopt.viz.scene_mesh import Mesh, Ring, block, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
 from liftopt.viz.scene_person import person_parts
-from liftopt.viz.scene_sawyer import sawyer_parts
+from liftopt.viz.scene_sawyer import gripper_parts, sawyer_parts
+from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 
 Array = npt.NDArray[np.float64]
-Command = dict[str, Any]
 WOOD: Colour = (0.78, 0.60, 0.38)
-EDGE: Colour = (0.55, 0.40, 0.24)
 PATH_COLOURS: dict[str, Colour] = {"human": (0.02, 0.45, 0.70), "robot": (0.90, 0.45, 0.0)}
 PATH_RADIUS = 0.004  # [m]
-GHOST_OPACITY = 0.32
-DECIMALS = 4  # of a drawn length: 0.1 mm
+GHOST_COLOUR, GHOST_TINT, GHOST_OPACITY = (0.45, 0.25, 0.80), 0.65, 0.40
 
 
 @dataclass(frozen=True)
@@ -38,6 +37,7 @@ class Cast:
         root: path of its node in the scene tree.
         offset: (3,) where it is put in the world [m].
         ghost: whether it is drawn see-through.
+        sawyer: the manufacturer's ``sawyer_description`` folder, or None for our own primitives.
     """
 
     solution: Solution
@@ -45,36 +45,35 @@ class Cast:
     root: str
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ghost: bool = False
+    sawyer: Path | None = None
 
 
-def lift_commands(cast: Cast, metres_per_newton: float) -> list[Command]:
-    """Return the viewer's commands that build one lift, each body at its first frame."""
-    commands = [_place(cast.root, translation(*cast.offset))]
+def lift_commands(cast: Cast) -> list[Command]:
+    """Return the viewer's commands that build one lift."""
+    commands = [place(cast.root, translation(*cast.offset))]
     opacity = GHOST_OPACITY if cast.ghost else 1.0
-    for part in _parts(cast):
-        mesh = part.mesh
+    for part in parts_of(cast):
+        mesh, colour = part.mesh, _tinted(part.colour) if cast.ghost else part.colour
         if part.body != GROUND:
-            mesh = mesh.seen_from(np.linalg.inv(cast.playback.zero[part.body]))
-        commands.append(set_object(body_path(cast, part.body) + "/" + part.name, mesh, part.colour, part.shininess, opacity))
+            mesh = mesh.seen_from(np.asarray(np.linalg.inv(cast.playback.zero[part.body])))
+        commands.append(set_object(body_path(cast, part.body) + "/" + part.name, mesh, colour, opacity))
     for name, force in cast.playback.forces.items():
         root = f"{cast.root}/force/{name}"
         commands += arrow_commands(root, PATH_COLOURS[name], opacity)
         path = _path_mesh(force.point)
         if path is not None:
-            commands.append(set_object(f"{cast.root}/path/{name}", path, PATH_COLOURS[name], 5.0, opacity))
+            commands.append(set_object(f"{cast.root}/path/{name}", path, PATH_COLOURS[name], opacity))
     return commands
 
 
 def lift_tracks(cast: Cast, metres_per_newton: float) -> list[Command]:
     """Return the animation of one lift: one clip for every node that moves."""
     time, clips = cast.playback.time, []
-    drawn = {part.body for part in _parts(cast)} - {GROUND}
-    for body in sorted(drawn):
-        track = cast.playback.bodies[body]
+    for body, track in cast.playback.bodies.items():
         values = {"position": track.position, "quaternion": track.quaternion}
         clips.append(clip(body_path(cast, body), time, values))
     for name, force in cast.playback.forces.items():
-        for path, values in arrow_tracks(f"{cast.root}/force/{name}", force, metres_per_newton).items():
+        for path, values in arrow_values(f"{cast.root}/force/{name}", force, metres_per_newton).items():
             clips.append(clip(path, time, values))
     return clips
 
@@ -84,68 +83,29 @@ def body_path(cast: Cast, body: str) -> str:
     return f"{cast.root}/body/{body}"
 
 
-def clip(path: str, time: Array, values: dict[str, Array]) -> Command:
-    """Return a node's animation: rows of ``values`` (K, 3 or 4) by property at ``time`` (K,) [s]."""
-    tracks = [
-        {
-            "name": f".{name}",
-            "type": "quaternion" if name == "quaternion" else "vector3",
-            "times": np.round(time, 5).tolist(),
-            "values": (np.round(rows, 6 if name == "quaternion" else DECIMALS + 1) + 0.0).ravel().tolist(),
-        }
-        for name, rows in values.items()
-    ]
-    return {"path": path, "clip": {"fps": 1, "name": "lift", "tracks": tracks}}
-
-
-def set_object(path: str, mesh: Mesh, colour: Colour, shininess: float, opacity: float = 1.0) -> Command:
-    """Return the command that draws ``mesh`` at ``path``, in three.js' own format."""
-    red, green, blue = (round(255 * value) for value in colour)
-    vertices = np.round(mesh.vertices, DECIMALS) + 0.0
-    geometry = {
-        "uuid": f"geometry{path}",
-        "type": "BufferGeometry",
-        "data": {
-            "attributes": {"position": {"itemSize": 3, "type": "Float32Array", "array": vertices.ravel().tolist()}},
-            "index": {"type": "Uint16Array", "array": mesh.triangles.ravel().tolist()},
-        },
-    }
-    material = {
-        "uuid": f"material{path}",
-        "type": "MeshPhongMaterial",
-        "color": (red << 16) + (green << 8) + blue,
-        "specular": 0x333333 if shininess > 10.0 else 0x080808,
-        "shininess": shininess,
-        "transparent": opacity < 1.0,
-        "opacity": opacity,
-        "depthWrite": opacity >= 1.0,
-    }
-    item = {"uuid": f"mesh{path}", "type": "Mesh", "geometry": geometry["uuid"], "material": material["uuid"]}
-    scene = {
-        "metadata": {"version": 4.5, "type": "Object"},
-        "geometries": [geometry],
-        "materials": [material],
-        "object": item,
-    }
-    return {"type": "set_object", "path": path, "object": scene}
-
-
-def _place(path: str, transform: Array) -> Command:
-    return {"type": "set_transform", "path": path, "matrix": transform.T.ravel().tolist()}
-
-
-def _parts(cast: Cast) -> list[Part]:
+def parts_of(cast: Cast) -> list[Part]:
+    """Return everything that is drawn of the person, the robot and the object, at zero."""
     scenario = cast.solution.scenario
     human, robot, table = scenario.human, scenario.robot, scenario.table
     world_base = translation(scenario.task.standing_distance, 0.0, robot.base_height) @ rotation_z(np.pi)
     subject = Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
     name = cast.solution.held.name
     size = (table.depth, table.width, table.height)
+    if cast.sawyer is None:
+        arm = sawyer_parts(world_base, robot.base_height)
+    else:
+        arm = sawyer_mesh_parts(cast.sawyer, world_base)
     return [
         *person_parts(subject),
-        *sawyer_parts(world_base, robot.base_height, robot.tool.length),
-        Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003), 15.0),
+        *arm,
+        *gripper_parts(world_base, robot.tool.length),
+        Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)),
     ]
+
+
+def _tinted(colour: Colour) -> Colour:
+    red, green, blue = (a + GHOST_TINT * (b - a) for a, b in zip(colour, GHOST_COLOUR, strict=True))
+    return (red, green, blue)
 
 
 def _path_mesh(points: Array) -> Mesh | None:
@@ -154,7 +114,7 @@ def _path_mesh(points: Array) -> Mesh | None:
     if along[-1] < 10.0 * PATH_RADIUS:
         return None
     # Even steps: the hand rests at both ends, where the frames lie on top of each other.
-    even = np.linspace(0.0, along[-1], 80)
+    even = np.linspace(0.0, along[-1], 50)
     x, y, z = (np.interp(even, along, points[:, i]) for i in range(3))
     rings = [Ring((float(a), float(b), float(c)), PATH_RADIUS, PATH_RADIUS) for a, b, c in zip(x, y, z, strict=True)]
     return tube(rings, (0.31, 0.9, 0.29))

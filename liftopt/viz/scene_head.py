@@ -49,20 +49,21 @@ def head_parts(subject: Subject, body: str, skin: Colour) -> list[Part]:
     eyes = [ball(face(0.50, 0.90, side * 0.40), (0.010, 0.015, 0.009)) for side in (-1.0, 1.0)]
     brows = [capsule(face(0.57, 0.93, s * 0.22), face(0.575, 0.84, s * 0.60), 0.006, 0.004) for s in (-1.0, 1.0)]
     mouth = capsule(face(0.20, 0.87, -0.22), face(0.20, 0.87, 0.22), 0.005)
-    longer = 0.10 if subject.sex == "female" else 0.36
+    longer = 0.10 if subject.sex == "female" else 0.34
+    # A cap that leans back: its front edge is the hair line, everywhere else it lies outside the skull.
     hair = [
-        ring(longer, 0.93, 0.66, -0.030),
-        ring(0.52, 1.05, 0.80, -0.026),
-        ring(0.68, 1.08, 0.92, -0.018),
-        ring(0.80, 1.02, 0.98, -0.008),
-        ring(0.92, 0.76, 0.76, -0.008),
-        ring(0.98, 0.44, 0.44, -0.008),
+        ring(longer, 0.94, 0.62, -0.040),
+        ring(0.50, 1.06, 0.80, -0.026),
+        ring(0.66, 1.09, 0.92, -0.016),
+        ring(0.76, 1.06, 1.06, -0.004),
+        ring(0.86, 0.94, 0.97, -0.005),
+        ring(0.96, 0.66, 0.69, -0.007),
     ]
     return [
         Part(body, "neck", skin, tube(throat, TO_SIDE)),
         Part(body, "head", skin, merged([tube(skull, TO_SIDE, round_start=0.008, round_end=0.016), nose, *ears])),
-        Part(body, "hair", HAIR, tube(hair, TO_SIDE, round_start=0.02, round_end=0.012), 12.0),
-        Part(body, "eyes", DARK, merged(eyes), 60.0),
+        Part(body, "hair", HAIR, tube(hair, TO_SIDE, round_start=0.02, round_end=0.02)),
+        Part(body, "eyes", DARK, merged(eyes)),
         Part(body, "brows", HAIR, merged(brows)),
         Part(body, "mouth", (0.62, 0.33, 0.30), mouth),
     ]

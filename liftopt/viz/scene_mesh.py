@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
-SIDES, FEW_SIDES = 28, 12  # of a ring: smooth at the size of a screen, for limbs and for fingers
+SIDES, FEW_SIDES = 20, 8  # of a ring: smooth at the size of a screen, for limbs and for fingers
 THIN = 0.02  # [m]
-CAP_RINGS = 5  # of a rounded end
+CAP_RINGS = 3  # of a rounded end
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,8 @@ def tube(rings: Sequence[Ring], across: Sequence[float], *, round_start: float =
     Args:
         rings: at least two, in order along the axis.
         across: (3,) direction of the rings' first half axis, made orthogonal to the axis at every ring.
-        round_start, round_end: how far the ends bulge [m]; 0 leaves them flat.
+        round_start: how far the first end bulges [m]; 0 leaves it flat.
+        round_end: the same of the last end.
     """
     centres = np.array([ring.centre for ring in rings])
     tangents = np.gradient(centres, axis=0)
@@ -65,7 +66,7 @@ def tube(rings: Sequence[Ring], across: Sequence[float], *, round_start: float =
     return _skin(loops)
 
 
-def capsule(start: Sequence[float], end: Sequence[float], radius: float, end_radius: float | None = None) -> Mesh:
+def capsule(start: npt.ArrayLike, end: npt.ArrayLike, radius: float, end_radius: float | None = None) -> Mesh:
     """Return a round-ended tube from ``start`` to ``end`` (3,), tapering to ``end_radius`` [m]."""
     tip = radius if end_radius is None else end_radius
     a, b = np.asarray(start, float), np.asarray(end, float)
@@ -74,7 +75,7 @@ def capsule(start: Sequence[float], end: Sequence[float], radius: float, end_rad
 
 
 def cylinder(
-    start: Sequence[float], end: Sequence[float], radius: float, *, end_radius: float | None = None, edge: float = 0.006
+    start: npt.ArrayLike, end: npt.ArrayLike, radius: float, *, end_radius: float | None = None, edge: float = 0.006
 ) -> Mesh:
     """Return a cylinder, or a cone, from ``start`` to ``end`` (3,) with edges rounded by ``edge`` [m]."""
     tip = radius if end_radius is None else end_radius
@@ -89,10 +90,9 @@ def cylinder(
 def ball(centre: Sequence[float], radii: Sequence[float]) -> Mesh:
     """Return an ellipsoid with half axes ``radii`` (3,) along x, y, z [m]."""
     c, (x, y, z) = np.asarray(centre, float), radii
-    angles = np.linspace(-np.pi / 2, np.pi / 2, 15)[1:-1]
-    rings = [
-        Ring(_point(c + [0.0, 0.0, z * np.sin(t)]), x * float(np.cos(t)), y * float(np.cos(t))) for t in angles
-    ]
+    flat = (float(c[0]), float(c[1]))
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 9)[1:-1]
+    rings = [Ring((*flat, float(c[2] + z * np.sin(t))), x * float(np.cos(t)), y * float(np.cos(t))) for t in angles]
     pole = z * (1.0 - float(np.sin(angles[-1])))
     return tube(rings, (1.0, 0.0, 0.0), round_start=pole, round_end=pole)
 
@@ -103,7 +103,7 @@ def block(centre: Sequence[float], size: Sequence[float], *, edge: float = 0.01)
     edge = float(min(edge, *(half * 0.9)))
     rings = []
     for z, inset in ((-half[2], edge), (-half[2] + edge, 0.0), (half[2] - edge, 0.0), (half[2], edge)):
-        rings.append(Ring(_point(c + [0.0, 0.0, z]), half[0] - inset, half[1] - inset, 12.0))
+        rings.append(Ring((float(c[0]), float(c[1]), float(c[2] + z)), half[0] - inset, half[1] - inset, 12.0))
     return tube(rings, (1.0, 0.0, 0.0))
 
 

@@ -18,14 +18,12 @@ class Part:
         name: of the part, unique on its body.
         colour: red, green, blue in [0, 1].
         mesh: in the world while every joint is at zero.
-        shininess: of the surface, three.js' Phong exponent.
     """
 
     body: str
     name: str
     colour: Colour
     mesh: Mesh
-    shininess: float = 20.0
 
 
 GROUND = "ground"

@@ -1,4 +1,7 @@
-"""The person as a figure: smooth limbs, trunk and head through the subject's own breadths, depths and girths."""
+"""The person as a figure: smooth limbs, trunk and head through the subject's own breadths, depths and girths.
+
+Lengths, breadths and girths are the subject's; the fractions of them that shape a limb in between are drawn by eye.
+"""
 
 from __future__ import annotations
 
@@ -38,13 +41,16 @@ def person_parts(subject: Subject) -> list[Part]:
     left = _arm(subject, LEFT)
     parts = [
         *_legs(subject),
-        Part("human_Q3", "trunk", SHIRT, _trunk(subject), 8.0),
+        Part("human_Q3", "trunk", SHIRT, _trunk(subject)),
         *head_parts(subject, "human_Q3", SKIN),
     ]
-    for arm, bodies, side in ((left, ("human_Q3",) * 3, "left"), (right, ("human_Q6", "human_Q8", "human_Q10"), "right")):
+    for arm, bodies, side in (
+        (left, ("human_Q3",) * 3, "left"),
+        (right, ("human_Q6", "human_Q8", "human_Q10"), "right"),
+    ):
         sleeve, upper, forearm, hand = arm
         parts += [
-            Part(bodies[0], f"{side}_sleeve", SHIRT, sleeve, 8.0),
+            Part(bodies[0], f"{side}_sleeve", SHIRT, sleeve),
             Part(bodies[0], f"{side}_upper_arm", SKIN, upper),
             Part(bodies[1], f"{side}_forearm", SKIN, forearm),
             Part(bodies[2], f"{side}_hand", SKIN, hand),
@@ -59,13 +65,11 @@ def _legs(subject: Subject) -> list[Part]:
     hips = [
         Ring((0.0, 0.0, crotch), 0.36 * breadth, 0.30 * depth, 2.4),
         Ring((-0.01, 0.0, at.hip), 0.50 * breadth, 0.50 * depth, 2.4),
-        Ring((-0.005, 0.0, 0.45 * at.hip + 0.55 * at.omphalion), 0.47 * breadth, 0.46 * depth, 2.4),
-        Ring((0.0, 0.0, at.omphalion + 0.015), 0.44 * breadth, 0.42 * depth, 2.4),
+        Ring((-0.005, 0.0, 0.45 * at.hip + 0.55 * at.omphalion), 0.46 * breadth, 0.45 * depth, 2.4),
+        Ring((0.0, 0.0, at.omphalion - 0.01), 0.42 * breadth, 0.40 * depth, 2.4),
     ]
-    parts.append(Part("human_GT3", "pelvis", TROUSERS, tube(hips, TO_SIDE, round_start=0.03, round_end=0.02), 5.0))
-    thigh, calf, ankle = (
-        girth_radius(subject, f"{name}circumference") for name in ("thigh", "calf", "ankle")
-    )
+    parts.append(Part("human_GT3", "pelvis", TROUSERS, tube(hips, TO_SIDE, round_start=0.03, round_end=0.02)))
+    thigh, calf, ankle = (girth_radius(subject, f"{name}circumference") for name in ("thigh", "calf", "ankle"))
     knee = 0.5 * (0.62 * thigh + calf)
     for side, name in ((LEFT, "left"), (RIGHT, "right")):
         y = side * HIP_JOINT_SPREAD * breadth
@@ -79,9 +83,9 @@ def _legs(subject: Subject) -> list[Part]:
             Ring((0.0, y, at.ankle + 0.03), 1.5 * ankle, 1.7 * ankle),
             Ring((0.0, y, at.ankle - 0.01), 1.5 * ankle, 1.75 * ankle),
         ]
-        parts.append(Part("human_GT3", f"{name}_leg", TROUSERS, tube(leg, TO_SIDE, round_start=0.05), 5.0))
+        parts.append(Part("human_GT3", f"{name}_leg", TROUSERS, tube(leg, TO_SIDE, round_start=0.05)))
         upper, sole = _shoe(subject, y)
-        parts.append(Part("human_GT3", f"{name}_shoe", SHOES, upper, 30.0))
+        parts.append(Part("human_GT3", f"{name}_shoe", SHOES, upper))
         parts.append(Part("human_GT3", f"{name}_sole", SOLES, sole))
     return parts
 
@@ -109,18 +113,18 @@ def _trunk(subject: Subject) -> Mesh:
     waist = dimension(subject, "waistbreadth") / 2.0, dimension(subject, "waistdepth") / 2.0
     chest = dimension(subject, "chestbreadth") / 2.0, dimension(subject, "chestdepth") / 2.0
     neck = girth_radius(subject, "neckcircumference")
-    hips = 0.46 * dimension(subject, "hipbreadth"), 0.44 * dimension(subject, "buttockdepth")
+    hips = 0.525 * dimension(subject, "hipbreadth"), 0.53 * dimension(subject, "buttockdepth")
     rise = at.suprasternale - shoulder + 0.055
     rings = [
-        Ring((0.0, 0.0, at.omphalion - 0.045), hips[0], hips[1], 2.4),
-        Ring((0.0, 0.0, at.omphalion + 0.02), 0.98 * waist[0], 0.96 * waist[1], 2.4),
-        Ring((0.0, 0.0, 0.5 * (at.omphalion + at.xiphion)), waist[0], 0.96 * waist[1], 2.4),
+        Ring((0.0, 0.0, at.omphalion - 0.05), hips[0], hips[1], 2.4),
+        Ring((0.0, 0.0, at.omphalion + 0.02), 1.02 * waist[0], 1.04 * waist[1], 2.4),
+        Ring((0.0, 0.0, 0.5 * (at.omphalion + at.xiphion)), 1.01 * waist[0], waist[1], 2.4),
         Ring((0.0, 0.0, at.xiphion), 1.02 * chest[0], 0.97 * chest[1], 2.5),
         Ring((-0.005, 0.0, 0.45 * at.xiphion + 0.55 * shoulder), 1.12 * chest[0], chest[1], 2.5),
         Ring((-0.015, 0.0, shoulder - 0.01), lengths.l3, 0.72 * chest[1], 2.6),
         Ring((-0.02, 0.0, shoulder + 0.4 * rise), 0.84 * lengths.l3, 0.55 * chest[1], 2.4),
-        Ring((-0.02, 0.0, shoulder + 0.8 * rise), 0.50 * lengths.l3, 0.42 * chest[1], 2.2),
-        Ring((-0.015, 0.0, shoulder + 1.15 * rise), 1.12 * neck, 1.15 * neck, 2.0),
+        Ring((-0.02, 0.0, shoulder + 0.8 * rise), 0.50 * lengths.l3, max(0.42 * chest[1], 1.12 * neck), 2.2),
+        Ring((-0.015, 0.0, shoulder + 1.15 * rise), 1.16 * neck, 1.2 * neck, 2.0),
     ]
     return tube(rings, TO_SIDE, round_start=0.015)
 
@@ -174,4 +178,3 @@ def _hand(subject: Subject, side: float, y: float, wrist: float) -> Mesh:
     meshes.append(capsule(root, middle, 0.0125, 0.0105))
     meshes.append(capsule(middle, middle + 0.34 * knuckles * np.array([0.40, side * 0.22, -0.88]), 0.0105, 0.008))
     return merged(meshes)
-

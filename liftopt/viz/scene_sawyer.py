@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from liftopt.multibody.dh import Array
-from liftopt.multibody.sawyer_description import HEAD_IN_FIRST_LINK, JOINTS, described_frames
+from liftopt.multibody.sawyer_description import FLANGE_IN_LAST_LINK, HEAD_IN_FIRST_LINK, JOINTS, described_frames
 from liftopt.viz.scene_mesh import Mesh, Ring, ball, block, capsule, cylinder, merged, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
 
@@ -23,26 +23,25 @@ TO_X = (1.0, 0.0, 0.0)
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-def sawyer_parts(world_base: Array, base_height: float, tool_length: float) -> list[Part]:
+def sawyer_parts(world_base: Array, base_height: float) -> list[Part]:
     """Return the robot with all joints at zero.
 
     Args:
         world_base: (4, 4) T_world_base of the manufacturer's base frame.
         base_height: of that frame above the floor [m]; the pedestal is stretched to it.
-        tool_length: from the flange to the grasp point [m]; 0 for no gripper.
     """
     parts = [_moved(part, world_base) for part in _stand(base_height)]
     frames = described_frames(np.zeros(len(JOINTS)))
-    for i, (frame, link) in enumerate(zip(frames, _links(tool_length), strict=True), start=1):
+    for i, (frame, link) in enumerate(zip(frames, _links(), strict=True), start=1):
         parts += [
-            _moved(Part(f"robot_Q{i}", f"l{i - 1}_{name}", colour, mesh, 45.0), world_base @ frame)
+            _moved(Part(f"robot_Q{i}", f"l{i - 1}_{name}", colour, mesh), world_base @ frame)
             for name, colour, mesh in link
         ]
     return parts
 
 
 def _moved(part: Part, transform: Array) -> Part:
-    return Part(part.body, part.name, part.colour, part.mesh.seen_from(transform), part.shininess)
+    return Part(part.body, part.name, part.colour, part.mesh.seen_from(transform))
 
 
 def _stand(base_height: float) -> list[Part]:
@@ -50,20 +49,23 @@ def _stand(base_height: float) -> list[Part]:
     legs = []
     for x, y in ((0.22, 0.30), (0.22, -0.30), (-0.47, 0.30), (-0.47, -0.30)):
         legs += [capsule((-0.12, 0.5 * y, floor + 0.20), (x, y, floor + 0.16), 0.040, 0.030)]
-        legs += [cylinder((x, y, floor), (x, y, floor + 0.03), 0.045), cylinder((x, y, floor), (x, y, floor + 0.19), 0.017)]
+        legs += [
+            cylinder((x, y, floor), (x, y, floor + 0.03), 0.045),
+            cylinder((x, y, floor), (x, y, floor + 0.19), 0.017),
+        ]
     frame = block((-0.12, 0.0, floor + 0.20), (0.52, 0.40, 0.07), edge=0.02)
     column = cylinder((0.0, 0.0, floor + 0.20), (0.0, 0.0, 0.0), 0.104)
     box = block((-0.325, 0.0, 0.5 * (floor + 0.24) - 0.05), (0.21, 0.35, max(-floor - 0.34, 0.05)), edge=0.02)
     base = merged([cylinder(ORIGIN, (0.0, 0.0, 0.014), 0.105), cylinder((0.0, 0.0, 0.01), (0.0, 0.0, 0.08), 0.075)])
     return [
         Part(GROUND, "pedestal_legs", BLACK, merged([*legs, frame])),
-        Part(GROUND, "pedestal_column", GREY, column, 30.0),
-        Part(GROUND, "controller", BLACK, box, 30.0),
-        Part(GROUND, "arm_base", GREY, base, 30.0),
+        Part(GROUND, "pedestal_column", GREY, column),
+        Part(GROUND, "controller", BLACK, box),
+        Part(GROUND, "arm_base", GREY, base),
     ]
 
 
-def _links(tool_length: float) -> list[list[tuple[str, Colour, Mesh]]]:
+def _links() -> list[list[tuple[str, Colour, Mesh]]]:
     """Return the shapes of right_l0 to right_l6 in the manufacturer's link frames."""
     shoulder = [
         Ring((0.0, 0.0, 0.0), 0.068, 0.068),
@@ -99,8 +101,8 @@ def _links(tool_length: float) -> list[list[tuple[str, Colour, Mesh]]]:
         [("tube", RED, tube(upper_tube, TO_X, round_end=0.02)), _hub((0.0, -0.042, 0.26), 0.043, 0.05)],
         _elbow(0.052, -0.174, -0.1265, -0.125, 0.045),
         [("tube", RED, tube(lower_tube, TO_X, round_end=0.02)), _hub((0.0, 0.031, 0.275), -0.040, 0.042)],
-        [*_elbow(0.044, 0.152, 0.1053, -0.086, 0.043)],
-        [("wrist", GREY, tube(wrist, TO_X)), *_gripper(tool_length)],
+        _elbow(0.044, 0.152, 0.1053, -0.086, 0.043),
+        [("wrist", GREY, tube(wrist, TO_X))],
     ]
 
 
@@ -143,17 +145,27 @@ def _head() -> list[tuple[str, Colour, Mesh]]:
     ]
 
 
-def _gripper(length: float) -> list[tuple[str, Colour, Mesh]]:
-    """Return a two-finger gripper whose tips meet at the grasp point, ``length`` [m] from the flange along z."""
+def gripper_parts(world_base: Array, length: float) -> list[Part]:
+    """Return a two-finger gripper whose tips meet at the grasp point; nothing for the bare flange.
+
+    Args:
+        world_base: (4, 4) T_world_base of the manufacturer's base frame.
+        length: from the flange to the grasp point, along the last joint's axis [m].
+    """
     if length <= 0.0:
         return []
-    flange, tip = 0.0245, 0.0245 + length
-    palm = flange + 0.5 * length
+    flange = FLANGE_IN_LAST_LINK[2]
+    tip, palm = flange + length, flange + 0.5 * length
     body = [cylinder((0.0, 0.0, 0.018), (0.0, 0.0, flange + 0.08 * length), 0.038)]
     body.append(block((0.0, 0.0, 0.5 * (flange + palm)), (0.055, 0.095, palm - flange), edge=0.012))
     fingers = []
     for side in (-1.0, 1.0):
-        elbow = (0.0, side * 0.036, palm)
-        fingers += [capsule(elbow, (0.0, side * 0.030, palm + 0.55 * (tip - palm)), 0.010)]
-        fingers += [capsule((0.0, side * 0.030, palm + 0.55 * (tip - palm)), (0.0, side * 0.012, tip - 0.006), 0.010, 0.008)]
-    return [("gripper", BLACK, merged(body)), ("fingers", SILVER, merged(fingers))]
+        bend = (0.0, side * 0.030, palm + 0.55 * (tip - palm))
+        fingers.append(capsule((0.0, side * 0.036, palm), bend, 0.010))
+        fingers.append(capsule(bend, (0.0, side * 0.012, tip - 0.006), 0.010, 0.008))
+    hand = world_base @ described_frames(np.zeros(len(JOINTS)))[-1]
+    last = f"robot_Q{len(JOINTS)}"
+    return [
+        _moved(Part(last, "gripper", BLACK, merged(body)), hand),
+        _moved(Part(last, "fingers", SILVER, merged(fingers)), hand),
+    ]

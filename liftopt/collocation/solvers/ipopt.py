@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,7 +50,7 @@ class Ipopt:
     def solve(
         self, x0: Array, *, deadline: float, warm: Multipliers | None = None, problem: Problem | None = None
     ) -> SolverResult:
-        """Solve from ``x0``; see ``Solver.solve``."""
+        """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration."""
         solver = self._solver(warm is not None)
         problem = problem or self.problem
         lower, upper = problem.bounds()
@@ -60,7 +64,8 @@ class Ipopt:
         self._deadline.at = deadline
         began = time.perf_counter()
         try:
-            found = solver(**arguments)
+            with _interruptible(self._deadline):
+                found = solver(**arguments)
         except RuntimeError as error:
             raise SolverError(f"IPOPT could not run: {error}") from error
         seconds = time.perf_counter() - began
@@ -127,6 +132,29 @@ class Ipopt:
                 ipopt=ipopt,
             ),
         )
+
+
+@contextmanager
+def _interruptible(deadline: _Deadline) -> Iterator[None]:
+    """Let a Ctrl-C stop the solver and act after it: CasADi would take it for a failed evaluation and go on."""
+    handler = signal.getsignal(signal.SIGINT)
+    # Only the main thread may set handlers; without one of Python's the signal is ignored or ends the process.
+    if not callable(handler) or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    interrupted = []
+
+    def note(*_: object) -> None:
+        interrupted.append(True)
+        deadline.at = -float("inf")
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if interrupted:
+            signal.raise_signal(signal.SIGINT)
 
 
 class _Deadline(ca.Callback):

@@ -1,0 +1,73 @@
+"""What the lift costs the person: strength used by each joint, and RULA by its parts, over time."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from liftopt.ergonomics.posture import posture_of
+from liftopt.ergonomics.rula import rula
+from liftopt.ergonomics.strength import strength_use
+from liftopt.viz.anatomy import ANATOMY
+from liftopt.viz.plots_data import Lift
+from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
+
+NEAR_LIMIT = 80  # percent of strength
+ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
+
+
+def strength_used(lift: Lift) -> Figure:
+    """Return a map of the share of strength by joint and time, darker for more."""
+    solution = lift.dense
+    uses = strength_use(solution)
+    share = 100 * np.stack([use.share for use in uses])
+    figure, grid = panels(1, height=2.9, left=2.15, right=1.2)
+    axes = grid[0][0]
+    top = max(50.0, float(share.max()))
+    edges = np.concatenate([[0.0], (percent(solution.time)[1:] + percent(solution.time)[:-1]) / 2, [100.0]])
+    image = axes.pcolormesh(edges, np.arange(len(uses) + 1), share, cmap="Blues", vmin=0.0, vmax=top, rasterized=True)
+    axes.set_yticks(np.arange(len(uses)) + 0.5, [joint.label for joint in ANATOMY])
+    axes.invert_yaxis()
+    axes.grid(False)
+    for row, use in enumerate(uses):
+        axes.text(101.5, row + 0.5, f"{100 * use.peak:.0f} %", va="center", fontsize=8, color=INK)
+        axes.axhline(row, color="white", linewidth=1.2)
+        if 100 * use.peak >= NEAR_LIMIT:
+            axes.contour(
+                (edges[1:] + edges[:-1]) / 2, [row, row + 1], share[[row, row]], [NEAR_LIMIT], colors=VERMILION
+            )
+    axes.text(103.5, -0.25, "peak", va="bottom", fontsize=7.5, color=INK)
+    figure.colorbar(image, cax=axes.inset_axes((1.16, 0.0, 0.03, 1.0)), label="strength used [%]")
+    axes.set_title("Strength used by each joint of the person")
+    time_axes(grid, float(solution.time[-1]))
+    return figure
+
+
+def posture_score(lift: Lift) -> Figure:
+    """Return the grand score of RULA over time, and the scores it is made of."""
+    solution = lift.dense
+    scores, time = rula(posture_of(solution)), percent(solution.time)
+    figure, grid = panels(2, height=1.5)
+    grand, parts = (line[0] for line in grid)
+    low = 0.5
+    for level, (high, action) in enumerate(ACTION_LEVELS):
+        grand.axhspan(low, high, facecolor=str(0.97 - 0.07 * level), zorder=0)
+        grand.text(99.0, (low + high) / 2, action, ha="right", va="center", fontsize=7.5, color=INK)
+        low = high
+    grand.step(time, scores.grand, where="post", color=INK, linewidth=2.2)
+    grand.set(title="RULA grand score", ylabel="score", yticks=range(1, 8), ylim=(0.5, 7.5))
+    for values, line, label, shift in (
+        (scores.upper_arm, LINES[0], "upper arm", 0.09),
+        (scores.lower_arm, LINES[1], "lower arm", 0.03),
+        (scores.wrist, LINES[2], "wrist", -0.03),
+        (scores.trunk, LINES[3], "trunk", -0.09),
+    ):
+        parts.step(
+            time, values + shift, where="post", color=line.color, linestyle=line.linestyle, label=label,
+            marker=line.marker, markevery=3 * lift.factor, markerfacecolor="white",
+        )  # fmt: skip
+    parts.step(time, scores.force, where="post", color=FAINT, linewidth=1.2, label="force")
+    parts.set(title="Scores of the parts", ylabel="score", yticks=range(7), ylim=(-0.4, 6.4))
+    parts.legend(ncols=5, loc="upper center", fontsize=7.5)
+    time_axes(grid, float(solution.time[-1]))
+    return figure

@@ -1,0 +1,43 @@
+"""Plots as SVG inside a page."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from html import escape
+
+from liftopt.viz.plots import PLOTS, Plot, drawn, rendered
+from liftopt.viz.plots_data import Lift
+
+# The second is as wide as the first, which few readers have; any other would shift the labels.
+FONTS = "'DejaVu Sans', Verdana, Geneva, sans-serif"
+
+
+@dataclass(frozen=True)
+class InlineFigure:
+    """One plot of the report: its name, what it shows, and its ``<svg>`` element."""
+
+    name: str
+    caption: str
+    svg: str
+
+
+def inline_figures(lift: Lift) -> dict[str, InlineFigure]:
+    """Return all plots by name."""
+    return {plot.name: InlineFigure(plot.name, plot.caption, _inline(plot, lift)) for plot in PLOTS}
+
+
+def _inline(plot: Plot, lift: Lift) -> str:
+    """Return the element without prolog and size, with ids that no other figure of the page has."""
+    svg = rendered(drawn(plot, lift), "svg").decode()
+    svg = svg[svg.index("<svg") :]
+    for dropped in (r"<metadata>.*?</metadata>", r"<style.*?</style>"):
+        svg = re.sub(dropped, "", svg, flags=re.DOTALL)
+    for link in ('id="', "url(#", 'href="#'):
+        svg = svg.replace(link, f"{link}{plot.name}-")
+    svg = svg.replace("'DejaVu Sans'", FONTS)
+    head, rest = svg.split(">", 1)
+    (view,) = re.findall(r'viewBox="[^"]*"', head)
+    return (
+        f'<svg xmlns:xlink="http://www.w3.org/1999/xlink" {view} role="img" aria-label="{escape(plot.caption)}">{rest}'
+    )

@@ -1,0 +1,139 @@
+"""The tables of the report, as rows ready to print."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from liftopt.multibody.human import Subject
+from liftopt.multibody.provenance import Quantity, subject_quantities
+from liftopt.scenario import Scenario, scenario_to_dict
+from liftopt.scenario_schema import describe
+from liftopt.solution import Solution
+from liftopt.viz.anatomy import JointCurve
+
+AT_KNOTS, BETWEEN = " at the knots", " between knots"
+
+
+@dataclass(frozen=True)
+class Headline:
+    """One of the numbers that matter most: the number, what it is, and a word on it."""
+
+    value: str
+    label: str
+    remark: str
+
+
+def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str, Any]]:
+    """Return a row a joint: range of motion used, largest torque and share of its limit, with their times."""
+    rows = []
+    for curve in curves:
+        at, worst = int(np.argmax(np.abs(curve.tau))), int(np.argmax(curve.share))
+        rows.append(
+            {
+                "label": curve.label,
+                "q": f"{_number(curve.q.min())} to {_number(curve.q.max())}",
+                "q_limits": _span(curve.q_limits),
+                "tau": f"{_number(curve.tau[at], 2)} at {dense.time[at]:.2f} s",
+                "tau_limits": _span(curve.tau_limits),
+                "share": 100 * float(curve.share[worst]),
+                "share_at": f"{dense.time[worst]:.2f} s",
+            }
+        )
+    return rows
+
+
+def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
+    """Return a row an entry: key, value, what it is and what is allowed."""
+    values = dict(_flat(scenario_to_dict(scenario)))
+    rows = []
+    for key, about in describe(Scenario):
+        what, _, allowed = about.partition(": ")
+        rows.append({"key": key, "value": values.get(key, ""), "what": what, "allowed": allowed})
+    return rows
+
+
+def check_rows(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return a row a requirement: its worst value at the knots and between them, the limit, and whether it holds."""
+    checks = {check["name"]: check for check in summary["verification"]["checks"]}
+    rows = []
+    for name, check in checks.items():
+        if name.endswith(BETWEEN) and _knot_name(name, checks) is not None:
+            continue
+        between = checks.get(name.removesuffix(AT_KNOTS) + BETWEEN)
+        rows.append(
+            {
+                "name": name,
+                "unit": check["unit"],
+                "value": _short(check["value"]),
+                "limit": "reported only" if check["limit"] is None else _short(check["limit"]),
+                "between": "" if between is None else _between(between),
+                "where": check["where"],
+                "passed": check["passed"] and (between is None or between["passed"]),
+            }
+        )
+    return [*rows, _kkt_row(summary["verification"])]
+
+
+def source_rows(scenario: Scenario) -> list[dict[str, Any]]:
+    """Return a row a group of numbers of the person's model and source: how many, where from, how far to trust them."""
+    groups: dict[tuple[str, str, str], int] = {}
+    for item in _quantities(scenario):
+        key = (item.group, item.source.citation, item.source.confidence)
+        groups[key] = groups.get(key, 0) + 1
+    return [
+        {"group": group, "citation": citation, "confidence": confidence, "count": count}
+        for (group, citation, confidence), count in groups.items()
+    ]
+
+
+def _between(check: dict[str, Any]) -> str:
+    """Return the worst value between knots, with its limit where it has one."""
+    return _short(check["value"]) + ("" if check["limit"] is None else f" (allowed {_short(check['limit'])})")
+
+
+def _kkt_row(verification: dict[str, Any]) -> dict[str, Any]:
+    error, limit = verification["kkt_error"], verification["kkt_tolerance"]
+    return {
+        "name": "first-order optimality (KKT error)",
+        "unit": "",
+        "value": _short(error),
+        "limit": _short(limit),
+        "between": "",
+        "where": "",
+        "passed": error is not None and error <= limit,
+    }
+
+
+def _quantities(scenario: Scenario) -> tuple[Quantity, ...]:
+    person = scenario.human
+    return subject_quantities(Subject(person.stature, person.mass, "male" if person.sex == "male" else "female"))
+
+
+def _knot_name(name: str, checks: dict[str, Any]) -> str | None:
+    stem = name.removesuffix(BETWEEN)
+    return next((other for other in (stem + AT_KNOTS, stem) if other in checks), None)
+
+
+def _flat(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    for key, value in tree.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _number(value: float, digits: int = 1) -> str:
+    return f"{round(float(value), digits) + 0.0:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _span(limits: tuple[float, float]) -> str:
+    low, high = (f"{round(limit, 1) + 0.0:g}".replace("-", "\N{MINUS SIGN}") for limit in limits)
+    return f"{low} to {high}"
+
+
+def _short(value: float | None) -> str:
+    return "\N{EM DASH}" if value is None else f"{value:.2g}".replace("-", "\N{MINUS SIGN}")

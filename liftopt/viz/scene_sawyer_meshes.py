@@ -1,0 +1,100 @@
+"""Sawyer in the manufacturer's own meshes, from a ``sawyer_description`` folder that the user has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.multibody.dh import rotation_x, rotation_z, translation
+from liftopt.multibody.sawyer_description import HEAD_IN_FIRST_LINK, JOINTS, described_frames
+from liftopt.viz.scene_mesh import Mesh
+from liftopt.viz.scene_part import GROUND, Colour, Part
+
+Array = npt.NDArray[np.float64]
+DESCRIPTION = "urdf/sawyer_base.urdf.xacro"
+RED: Colour = (0.55, 0.07, 0.08)
+DARK: Colour = (0.16, 0.16, 0.17)
+SHARP = 0.6  # [rad]: edges sharper than this stay edges
+# The joint that moves each link of the description; what is not here is not drawn.
+BODIES = {"pedestal": GROUND, "right_arm_base_link": GROUND, "head": "robot_Q1"} | {
+    f"right_l{i}": f"robot_Q{i + 1}" for i in range(len(JOINTS))
+}
+
+
+@dataclass(frozen=True)
+class _Visual:
+    link: str
+    placement: Array
+    file: Path
+
+
+def sawyer_mesh_parts(folder: str | Path, world_base: Array) -> list[Part]:
+    """Return the robot with all joints at zero, from the STL files beside those its description names.
+
+    Args:
+        folder: a ``sawyer_description`` with ``urdf/`` and ``meshes/``.
+        world_base: (4, 4) T_world_base of the manufacturer's base frame.
+
+    Raises:
+        InputError: the folder is none, or a mesh cannot be read; it says which and why.
+    """
+    frames = dict(
+        zip((f"right_l{i}" for i in range(len(JOINTS))), described_frames(np.zeros(len(JOINTS))), strict=True)
+    )
+    frames["head"] = frames["right_l0"] @ translation(*HEAD_IN_FIRST_LINK)
+    parts = []
+    for visual in _visuals(Path(folder)):
+        placement = world_base @ frames.get(visual.link, np.eye(4)) @ visual.placement
+        colour = DARK if visual.link == "pedestal" else RED
+        parts.append(Part(BODIES[visual.link], visual.link, colour, _load(visual.file).seen_from(placement)))
+    return parts
+
+
+def _visuals(folder: Path) -> list[_Visual]:
+    source = folder / DESCRIPTION
+    try:
+        tree = ElementTree.parse(source)
+    except (OSError, ElementTree.ParseError) as error:
+        raise InputError("--sawyer", str(folder), f"is no sawyer_description: {DESCRIPTION}: {error}") from None
+    visuals = []
+    for link in tree.getroot().iter("link"):
+        name, visual = str(link.get("name")), link.find("visual")
+        mesh = None if visual is None else visual.find("geometry/mesh")
+        if name not in BODIES or visual is None or mesh is None:
+            continue
+        inside = str(mesh.get("filename")).split("sawyer_description/", 1)[-1]
+        visuals.append(_Visual(name, _origin(visual.find("origin")), (folder / inside).with_suffix(".STL")))
+    missing = sorted(set(BODIES) - {visual.link for visual in visuals})
+    if missing:
+        raise InputError("--sawyer", str(folder), f"{DESCRIPTION} has no mesh for {', '.join(missing)}")
+    return visuals
+
+
+def _origin(element: ElementTree.Element | None) -> Array:
+    if element is None:
+        return np.eye(4)
+    x, y, z = map(float, element.get("xyz", "0 0 0").split())
+    roll, pitch, yaw = map(float, element.get("rpy", "0 0 0").split())
+    about_y = rotation_x(-np.pi / 2) @ rotation_z(pitch) @ rotation_x(np.pi / 2)
+    placement: Array = translation(x, y, z) @ rotation_z(yaw) @ about_y @ rotation_x(roll)
+    return placement
+
+
+def _load(file: Path) -> Mesh:
+    import trimesh
+
+    if not file.is_file():
+        raise InputError("--sawyer", NO_VALUE, f"there is no mesh {file}")
+    try:
+        loaded = trimesh.load_mesh(file)
+        if not len(loaded.faces):
+            raise ValueError("it has no triangles")
+        smooth = trimesh.graph.smooth_shade(loaded, angle=SHARP)
+        return Mesh(np.asarray(smooth.vertices, float), np.asarray(smooth.faces, np.int64))
+    except Exception as error:  # trimesh's readers raise whatever a broken file makes them raise
+        raise InputError("--sawyer", NO_VALUE, f"{file} cannot be read as STL: {error}") from None

@@ -1,0 +1,103 @@
+"""``liftopt view``: a result, or two, in the browser or in a file to send."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import webbrowser
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import FrameType
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.viz.viewer_server import FIRST_PORT, PageServer
+
+
+def view(
+    result: str | Path,
+    *,
+    other: str | Path | None = None,
+    ghost: bool = False,
+    html: str | Path | None = None,
+    sawyer: str | Path | None = None,
+    port: int = FIRST_PORT,
+    browser: bool = True,
+    say: Callable[[str], None] = print,
+) -> None:
+    """Play a result in the browser until Ctrl-C, or write the playback to a file.
+
+    Args:
+        result: folder that ``liftopt solve`` wrote, or its ``solution.nc``.
+        other: a second result, shown beside the first.
+        ghost: show the second one see-through in the first one's place.
+        html: file to write the page to; then nothing is served.
+        sawyer: the manufacturer's ``sawyer_description`` folder, for its meshes in place of our primitives.
+        port: first port to try.
+        browser: open the page in the user's browser.
+        say: where to tell the user about the page.
+
+    Raises:
+        InputError: a result cannot be read, or the file cannot be written; it says which and why.
+    """
+    if ghost and other is None:
+        raise InputError("--ghost", NO_VALUE, "needs a second result: add --with OTHER")
+    if not 0 <= port <= 65535:
+        raise InputError("--port", port, "must be from 0 to 65535")
+    with _interrupts_kept():
+        page = _page(result, other, ghost, sawyer)
+    if html is not None:
+        _write(Path(html), page)
+        say(f"Written to {html}: {len(page.encode('utf-8')) / 1e6:.1f} MB, complete in itself")
+        return
+    with PageServer(page, port) as server, suppress(KeyboardInterrupt):
+        say(f"Playing at {server.url} (Ctrl-C ends it)")
+        if browser and not _opened(server.url):
+            say("No browser could be opened here: open this address in one.")
+        server.serve_forever(poll_interval=0.2)
+
+
+def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str | Path | None) -> str:
+    from liftopt.result_reader import load_result
+    from liftopt.viz.viewer_page import playback_page
+
+    second = None if other is None else load_result(other)
+    return playback_page(load_result(result), second, ghost=ghost, sawyer=sawyer)
+
+
+@contextmanager
+def _interrupts_kept() -> Iterator[None]:
+    """Interrupt after the block if something inside swallowed it, as trimesh does while it tries its imports."""
+    handler = signal.getsignal(signal.SIGINT)
+    if handler is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    noted: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        noted.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    if noted:
+        raise KeyboardInterrupt
+
+
+def _write(file: Path, page: str) -> None:
+    try:
+        file.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise InputError("--html", str(file), f"cannot be written: {error.strerror or error}") from None
+
+
+def _opened(url: str) -> bool:
+    """Return whether a browser with windows was started; one in the terminal would show nothing, and would block."""
+    try:
+        browser = webbrowser.get()
+    except webbrowser.Error:
+        return False
+    return type(browser) is not webbrowser.GenericBrowser and browser.open(url)

@@ -1,0 +1,150 @@
+"""The page that plays one lift, or two: one self-contained file with the meshcat viewer, the scene and the controls.
+
+The page that ``liftopt view`` serves and the file that ``--html`` writes are the same bytes. The meshcat package
+lends its bundle of the viewer and three.js; its server and its Python classes are not needed, and not imported.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from liftopt.errors import InputError
+from liftopt.solution import Solution
+from liftopt.viz.playback import playback_of
+from liftopt.viz.scene import Cast, lift_commands, lift_tracks
+from liftopt.viz.scene_stage import stage_commands
+
+LONGEST_ARROW = 0.40  # [m]: of the largest force shown
+APART = 2.2  # [m] between two lifts side by side, along Y
+
+
+def playback_page(
+    solution: Solution, other: Solution | None = None, *, ghost: bool = False, sawyer: str | Path | None = None
+) -> str:
+    """Return the HTML of the playback.
+
+    Args:
+        solution: the lift to play.
+        other: a second one, put beside the first on the person's left.
+        ghost: draw the second one see-through in the first one's place instead.
+        sawyer: the manufacturer's ``sawyer_description`` folder, for its meshes in place of our own primitives.
+
+    Raises:
+        InputError: there is no such folder, or meshcat's viewer is not installed.
+    """
+    casts = _casts(solution, other, ghost, None if sawyer is None else Path(sawyer))
+    scale = _metres_per_newton(casts)
+    commands = stage_commands()
+    tracks: list[dict[str, Any]] = []
+    for cast in casts:
+        commands += lift_commands(cast)
+        tracks += lift_tracks(cast, scale)
+    data = {
+        "commands": commands,
+        "animation": {"type": "set_animation", "animations": tracks, "options": {"play": False, "repetitions": 1}},
+        "lifts": [_facts(cast, name) for cast, name in zip(casts, _names(casts), strict=True)],
+        "duration": max(float(cast.playback.time[-1]) for cast in casts),
+        "metres_per_newton": scale,
+        "sight": _sight(casts),
+    }
+    return _fill(data, _title(solution, other))
+
+
+def _casts(solution: Solution, other: Solution | None, ghost: bool, sawyer: Path | None) -> list[Cast]:
+    casts = [Cast(solution, playback_of(solution), "/lift", sawyer=sawyer)]
+    if other is not None:
+        offset = (0.0, 0.0, 0.0) if ghost else (0.0, APART, 0.0)
+        casts.append(Cast(other, playback_of(other), "/other", offset, ghost, sawyer))
+    return casts
+
+
+def _metres_per_newton(casts: Sequence[Cast]) -> float:
+    """Return the arrows' scale: 1, 2 or 5 times a power of ten, so that a reader can tell a force from its length."""
+    forces = [force.force for cast in casts for force in cast.playback.forces.values()]
+    largest = max(1e-3, *(float(np.linalg.norm(force, axis=1).max()) for force in forces))
+    wanted = LONGEST_ARROW / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted * (1.0 + 1e-9)))
+
+
+def _names(casts: Sequence[Cast]) -> list[str]:
+    """Return what to call the lifts: their scenarios' names, told apart if they are the same."""
+    names = [cast.solution.scenario.name for cast in casts]
+    if len(set(names)) < len(names):
+        return [f"{name} ({place})" for name, place in zip(names, ("first", "second"), strict=True)]
+    return names
+
+
+def _facts(cast: Cast, name: str) -> dict[str, Any]:
+    """Return what the page writes beside the picture."""
+    solution, playback = cast.solution, cast.playback
+    sizes = {name: np.round(np.linalg.norm(f.force, axis=1), 2).tolist() for name, f in playback.forces.items()}
+    return {
+        "root": cast.root,
+        "name": name,
+        "status": solution.status,
+        "solved": solution.solved,
+        "ghost": cast.ghost,
+        "time": np.round(playback.time, 5).tolist(),
+        "force": sizes,
+        "height": np.round(playback.bodies[solution.held.name].position[:, 2], 4).tolist(),
+    }
+
+
+def _sight(casts: Sequence[Cast]) -> dict[str, list[float]]:
+    """Return the points [m] that the camera presets look at and keep in view."""
+    middle = 0.5 * max(cast.solution.scenario.task.standing_distance for cast in casts)
+    y = 0.5 * sum(cast.offset[1] for cast in casts) if len(casts) > 1 else 0.0
+    held = np.vstack([cast.playback.bodies[cast.solution.held.name].position + cast.offset for cast in casts])
+    return {
+        "middle": [middle, y, 0.95],
+        "hands": np.round(held.mean(axis=0), 4).tolist(),
+        "human": [0.15, 0.0, 1.25],
+        "robot": [2.0 * middle - 0.15, 0.0, 1.15],
+        "half_width": [middle + 0.65],
+        "half_depth": [y],
+    }
+
+
+def _title(solution: Solution, other: Solution | None) -> str:
+    name = solution.scenario.name
+    return f"{name} - liftopt" if other is None else f"{name} and {other.scenario.name} - liftopt"
+
+
+def _fill(data: dict[str, Any], title: str) -> str:
+    assets, viewer = files("liftopt.viz") / "assets", meshcat_viewer()
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    licences = [(viewer / name).read_text(encoding="utf-8") for name in ("../LICENSE", "main.min.js.LICENSE.txt")]
+    pieces = {
+        "@TITLE@": title.replace("&", "&amp;").replace("<", "&lt;"),
+        "@STYLE@": (assets / "playback.css").read_text(encoding="utf-8"),
+        "@LICENCES@": "\n".join(licences).replace("--", "- -").replace("</", "<\\/"),
+        "@VIEWER@": (viewer / "main.min.js").read_text(encoding="utf-8").replace("</script", "<\\/script"),
+        "@DATA@": text,
+        "@SCRIPT@": (assets / "playback.js").read_text(encoding="utf-8"),
+    }
+    page = (assets / "playback.html").read_text(encoding="utf-8")
+    # In one pass: a piece may hold what looks like a mark.
+    return re.sub("|".join(pieces), lambda mark: pieces[mark.group()], page)
+
+
+def meshcat_viewer() -> Path:
+    """Return the folder with the meshcat package's bundled viewer.
+
+    Raises:
+        InputError: meshcat is not installed, or has no viewer.
+    """
+    spec = find_spec("meshcat")
+    for place in (spec.submodule_search_locations or []) if spec else []:
+        folder = Path(place) / "viewer" / "dist"
+        if (folder / "main.min.js").is_file():
+            return folder
+    raise InputError("meshcat", "viewer/dist/main.min.js", "is missing; install the Python package meshcat again")

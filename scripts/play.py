@@ -1,0 +1,8 @@
+"""Play a solved lift in the browser: ``python scripts/play.py ARGS`` is ``liftopt view ARGS``."""
+
+import sys
+
+from liftopt.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main(["view", *sys.argv[1:]]))

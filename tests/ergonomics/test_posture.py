@@ -1,0 +1,59 @@
+"""The posture as measured: the oracle is one joint moved at a time, where anatomy says what the goniometer reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.ergonomics.posture import Posture, posture_of
+
+ANGLES = (
+    "trunk_flexion", "trunk_bend", "trunk_turn", "upper_arm_flexion", "upper_arm_out", "elbow_flexion",
+    "wrist_flexion", "wrist_deviation",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("joints", "wanted"),
+    [
+        ({}, {}),
+        ({"Q5": 50.0}, {"upper_arm_flexion": 50.0}),
+        ({"Q5": -30.0}, {"upper_arm_flexion": -30.0}),
+        ({"Q4": -40.0}, {"upper_arm_out": 40.0}),
+        ({"Q7": -75.0}, {"elbow_flexion": 75.0}),
+        ({"Q9": -25.0}, {"wrist_flexion": 25.0}),
+        ({"Q10": 12.0}, {"wrist_deviation": 12.0}),
+        # The arm is carried along by the trunk: against it, it does not move.
+        ({"Q2": 30.0, "Q5": 50.0}, {"trunk_flexion": 30.0, "upper_arm_flexion": 50.0}),
+        ({"Q1": 15.0, "Q3": 20.0}, {"trunk_bend": 15.0, "trunk_turn": 20.0}),
+    ],
+    ids=str,
+)
+def test_one_joint_moves_one_angle(
+    posed: Callable[..., Any], joints: dict[str, float], wanted: dict[str, float]
+) -> None:
+    posture = posture_of(posed(**joints))
+    found = {name: getattr(posture, name)[0] for name in ANGLES}
+    assert found == pytest.approx(dict.fromkeys(ANGLES, 0.0) | wanted, abs=1e-9)
+
+
+def test_forearm_counts_from_the_middle_of_its_range(posed: Callable[..., Any]) -> None:
+    # Full supination is Q8 = 0, full pronation -160 deg: the thumb is up at -80.
+    assert [posture_of(posed(Q8=angle)).pronation[0] for angle in (0.0, -80.0, -160.0)] == pytest.approx([-80, 0, 80])
+
+
+def test_wrist_left_and_outside(posed: Callable[..., Any]) -> None:
+    hanging: Posture = posture_of(posed())
+    assert hanging.wrist_outside[0] == pytest.approx(0.0, abs=1e-9)  # straight below the shoulder
+    assert hanging.wrist_left[0] < -0.1  # the right arm
+    across = posture_of(posed(Q5=90.0, Q4=0.0, Q6=60.0, Q7=-90.0))
+    assert across.wrist_left[0] > hanging.wrist_left[0] + 0.1
+    raised = posture_of(posed(Q4=-90.0))
+    assert raised.wrist_outside[0] > 0.4
+
+
+def test_hand_load_is_the_force_as_a_mass(posed: Callable[..., Any]) -> None:
+    np.testing.assert_allclose(posture_of(posed(force=(3.0, 4.0, 12.0))).hand_load, 13.0 / 9.81, rtol=1e-12)
