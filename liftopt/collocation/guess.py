@@ -27,15 +27,15 @@ SPREAD = 0.25
 # Peak speed of the quintic blend over its mean speed.
 QUINTIC_PEAK = 1.875
 POSTURE_WEIGHT = 1e-2
-# A posture takes some 20 iterations; one that takes more is hardly ever found.
-MAX_ITERATIONS = 100
+# A posture takes 25 to 50 iterations; a search that takes more mostly ends nowhere.
+MAX_ITERATIONS = 50
 # Holding still at each end for half the time, halved again: as much as the objective of the blend on average.
 STATIC_WEIGHT = 0.25
 # Seeds after which an end that no posture was found for is given up.
 HOPELESS = 4
 # Pairs nearer than this in every joint [rad] mostly lead to the same optimum.
 DIFFERENT = 0.3
-SEEDS_A_START = 4
+SEEDS_A_START = 3
 TOO_FAST_WEIGHT = 1e3
 NAIVE_FORCE = 10.0
 
