@@ -27,8 +27,8 @@ SPREAD = 0.25
 # Peak speed of the quintic blend over its mean speed.
 QUINTIC_PEAK = 1.875
 POSTURE_WEIGHT = 1e-2
-# A posture takes 25 to 50 iterations; a search that takes more mostly ends nowhere.
-MAX_ITERATIONS = 50
+# Over eight varied scenarios, 95 % of the postures found took at most 93 iterations.
+MAX_ITERATIONS = 100
 # Holding still at each end for half the time, halved again: as much as the objective of the blend on average.
 STATIC_WEIGHT = 0.25
 # Seeds after which an end that no posture was found for is given up.
