@@ -54,11 +54,9 @@ def lift(scenario: Scenario, *, out: Path | None = None, progress: Say | None = 
     team = Team.of(agents_of(scenario), object_of(scenario), say)
     if not all(kernel.compiled for kernel in team.kernels):
         notes.append("no C compiler: the dynamics ran in CasADi's virtual machine, several times slower")
-    # Compiling is done once in a lifetime; the limit is on what comes after, with time left to verify and write.
-    deadline = time.monotonic() + SOLVING_SHARE * scenario.solver.time_limit
-    search = _Search(scenario, team, RestToRestSpline(scenario.solver.intervals), deadline, say)
+    search = _Search(scenario, team, RestToRestSpline(scenario.solver.intervals), say)
     best = search.run()
-    while best.refinable and search.spline.intervals * 2 <= FINEST and time.monotonic() < deadline:
+    while best.refinable and search.spline.intervals * 2 <= FINEST and time.monotonic() < search.deadline:
         gap = best.verification.check("closure between knots").value
         coarse, search = search, search.refined()
         notes.append(
@@ -96,8 +94,8 @@ class _Candidate:
 class _Search:
     """Starts, solves and verifies on one mesh."""
 
-    def __init__(self, scenario: Scenario, team: Team, spline: RestToRestSpline, deadline: float, say: Say) -> None:
-        self.scenario, self.team, self.spline, self.deadline, self.say = scenario, team, spline, deadline, say
+    def __init__(self, scenario: Scenario, team: Team, spline: RestToRestSpline, say: Say) -> None:
+        self.scenario, self.team, self.spline, self.say = scenario, team, spline, say
         self.problem = Problem(team, task_of(scenario), spline.mesh())
         self.solver = Ipopt(self.problem, IpoptOptions(tolerance=scenario.solver.tolerance))
         # Tried first where the scenario asks for it; IPOPT takes over from every start it fails from.
@@ -105,7 +103,9 @@ class _Search:
         if scenario.solver.name == "banded":
             self.quick = Banded(self.problem, BandedOptions(tolerance=scenario.solver.tolerance), say)
         self.records: list[StartRecord] = []
+        # Compiling is done once in a lifetime; the limit is on what comes after, with time left to verify and write.
         self.prepared = time.monotonic()
+        self.deadline = self.prepared + SOLVING_SHARE * scenario.solver.time_limit
 
     def run(self) -> _Candidate:
         """Solve from all starts and return the best verified result, or the best iterate and why it is none."""
@@ -135,8 +135,8 @@ class _Search:
     def refined(self) -> _Search:
         """Return a search on twice as many intervals."""
         spline = RestToRestSpline(2 * self.spline.intervals)
-        finer = _Search(self.scenario, self.team, spline, self.deadline, self.say)
-        finer.records = self.records
+        finer = _Search(self.scenario, self.team, spline, self.say)
+        finer.records, finer.deadline = self.records, self.deadline
         return finer
 
     def transfer(self, result: SolverResult, spline: RestToRestSpline) -> Start:
