@@ -38,18 +38,3 @@ class ModelError(LiftoptError):
 
 class SolverError(LiftoptError):
     """The solver adapter failed for a reason that is not the problem's (an option, a library)."""
-
-
-class InfeasibleError(LiftoptError):
-    """The task cannot be done; the message says what is in the way.
-
-    Attributes:
-        constraint: name of the constraint block that cannot be met (``"closure"``, ``"torque"``...).
-        who: agent or object concerned.
-        amount: how far it is from being met, in ``unit``.
-        unit: SI unit of ``amount``.
-    """
-
-    def __init__(self, message: str, *, constraint: str, who: str, amount: float, unit: str) -> None:
-        self.constraint, self.who, self.amount, self.unit = constraint, who, amount, unit
-        super().__init__(message)

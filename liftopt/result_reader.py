@@ -14,7 +14,7 @@ from liftopt.checks import Check, Verification
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.scenario import Scenario, load_scenario
-from liftopt.scene import agents_of, object_of
+from liftopt.scene import URDF_FILES, agents_of, object_of
 from liftopt.solution import Solution, StartRecord
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 
@@ -59,9 +59,14 @@ def _read(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, Any], folder: Path) -> Solution:
     record = json.loads(str(attributes["record"]))
-    urdfs = {file.name: file.read_text(encoding="utf-8") for file in sorted((folder / "models").glob("*.urdf"))}
-    agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
+    urdfs = _models(folder / "models")
+    try:
+        agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
+    except ValueError as error:
+        raise InputError(str(folder / "models"), NO_VALUE, f"holds a model that cannot be read ({error})") from None
     time = _array(data, "time", (len(data["time"]),))
+    if not (np.diff(time) > 0.0).all():
+        raise ValueError("time does not increase")
     knots = len(time)
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
     checks = tuple(Check(**check | _numbers(check, value=np.nan, limit=np.inf)) for check in record["checks"])
@@ -83,6 +88,20 @@ def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, An
         verification=Verification(checks, float(attributes["kkt_error"]), float(record["kkt_tolerance"])),
         notes=tuple(record["notes"]),
     )
+
+
+def _models(folder: Path) -> dict[str, str]:
+    """Return the text of each URDF, by file name."""
+    texts = {}
+    for name in URDF_FILES.values():
+        try:
+            texts[name] = (folder / name).read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
+            raise InputError(
+                str(folder / name), NO_VALUE, f"cannot be read, and belongs to the result: {why}"
+            ) from None
+    return texts
 
 
 def _agent(agent: Agent, data: dict[str, Any], force: Array) -> AgentTrajectory:
@@ -108,4 +127,6 @@ def _array(data: dict[str, Any], name: str, shape: tuple[int, ...]) -> Array:
     values = np.asarray(data[name], dtype=float)
     if values.shape != shape:
         raise ValueError(f"{name} has shape {values.shape}, expected {shape}")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{name} holds values that are not finite")
     return values

@@ -10,9 +10,10 @@ import dataclasses
 import difflib
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import MISSING, dataclass
-from typing import Any, NamedTuple, get_type_hints
+from functools import cache
+from typing import Any, NamedTuple, cast, get_type_hints
 
 from liftopt.errors import NO_VALUE, InputError
 
@@ -169,6 +170,11 @@ class Entry(NamedTuple):
 
 def entries(of: type[Any]) -> tuple[Entry, ...]:
     """Return the entries of a section in the order they are declared."""
+    return _entries(cast(Hashable, of))
+
+
+@cache
+def _entries(of: Any) -> tuple[Entry, ...]:
     hints = get_type_hints(of, include_extras=True)
     result = []
     for f in dataclasses.fields(of):

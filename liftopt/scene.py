@@ -26,17 +26,24 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
         scenario: who they are.
         urdfs: file name -> text of the models if they were written before, as a solution keeps them.
     """
-    human, robot, urdfs = scenario.human, scenario.robot, urdfs or {}
-    subject = Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
-    return (
-        human_agent(subject, urdfs.get(URDF_FILES["human"])),
-        sawyer_agent(
-            standing_distance=scenario.task.standing_distance,
-            base_height=robot.base_height,
-            tool_length=robot.tool.length,
-            tool_mass=robot.tool.mass,
-            urdf=urdfs.get(URDF_FILES["robot"]),
-        ),
+    return human_of(scenario, urdfs), robot_of(scenario, urdfs)
+
+
+def human_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
+    """Return the person; ``urdfs`` as in ``agents_of``."""
+    human, urdf = scenario.human, (urdfs or {}).get(URDF_FILES["human"])
+    return human_agent(Subject(human.stature, human.mass, "male" if human.sex == "male" else "female"), urdf)
+
+
+def robot_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
+    """Return the robot; ``urdfs`` as in ``agents_of``."""
+    robot = scenario.robot
+    return sawyer_agent(
+        standing_distance=scenario.task.standing_distance,
+        base_height=robot.base_height,
+        tool_length=robot.tool.length,
+        tool_mass=robot.tool.mass,
+        urdf=(urdfs or {}).get(URDF_FILES["robot"]),
     )
 
 

@@ -6,7 +6,7 @@ kernels that the solver used.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +46,11 @@ class AgentTrajectory:
     ground_moment: Array
     limits: JointLimits
 
+    def every(self, step: int) -> AgentTrajectory:
+        """Return the trajectory at the first and every ``step``-th time after it."""
+        over_time = ("q", "v", "a", "tau", "grasp_force", "grasp_position", "ground_force", "ground_moment")
+        return replace(self, **{name: getattr(self, name)[::step] for name in over_time})
+
 
 @dataclass(frozen=True)
 class ObjectTrajectory:
@@ -71,75 +76,125 @@ class ObjectTrajectory:
     grasp_position: Array
     wrench: Array
 
+    def every(self, step: int) -> ObjectTrajectory:
+        """Return the trajectory at the first and every ``step``-th time after it."""
+        over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name != "name"}
+        return replace(self, **over_time)
+
 
 def agent_trajectory(agent: Agent, q: Array, v: Array, a: Array, force: Array) -> AgentTrajectory:
     """Return the trajectory of an agent from its moving joints (K, n_moving) and its force on the object (K, 3)."""
-    model = agent.model
-    moving = np.array([name not in agent.pinned for name in list(model.names)[1:]])
+    model, names = agent.model, tuple(list(agent.model.names)[1:])
+    moving = np.array([name not in agent.pinned for name in names])
     full_q, full_v, full_a = (np.zeros((len(q), model.nv)) for _ in range(3))
     full_q[:, moving], full_v[:, moving], full_a[:, moving] = q, v, a
-    data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
-    tau, point, ground_force, ground_moment = np.zeros_like(full_q), *np.zeros((3, len(q), 3))
-    p_world_base = model.jointPlacements[1].translation
+    data, frame, force = model.createData(), model.frames[model.getFrameId(agent.grasp_frame)], np.array(force, float)
+    carrier, lever = frame.parentJoint, frame.placement.translation
+    tau, point, root = np.zeros_like(full_q), np.zeros((len(q), 3)), np.zeros((len(q), 6))
+    slopes = np.zeros((len(q), 6, model.nv))
     for k in range(len(q)):
-        jacobian = pin.computeFrameJacobian(model, data, full_q[k], frame, pin.LOCAL_WORLD_ALIGNED)[:3]
-        pin.forwardKinematics(model, data, full_q[k])
-        point[k] = pin.updateFramePlacement(model, data, frame).translation
-        free = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
+        slopes[k] = pin.computeJointJacobians(model, data, full_q[k])
+        point[k] = data.oMi[carrier].act(lever)
+        tau[k] = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
         # The wrench that the first joint transmits holds all that moves against gravity and its own motion; what is
         # fixed to the ground (a robot's pedestal) is not part of it.
-        root = data.oMi[1].act(data.f[1])
-        tau[k] = free + jacobian.T @ force[k]
-        ground_force[k] = root.linear + force[k]
-        ground_moment[k] = root.angular - pin.skew(p_world_base) @ root.linear
-        ground_moment[k] += pin.skew(point[k] - p_world_base) @ force[k]
+        root[k] = data.oMi[1].act(data.f[1]).vector
+    # The Jacobians (linear, then angular) are about the world's origin, so the force has its moment about it.
+    tau += np.einsum("kci,kc->ki", slopes, np.hstack([force, cross(point, force)])) * bearing(model, carrier)
+    p_world_base = model.jointPlacements[1].translation
+    moment = root[:, 3:] - cross(p_world_base, root[:, :3]) + cross(point - p_world_base, force)
     return AgentTrajectory(
-        agent.name, tuple(list(model.names)[1:]), moving, full_q, full_v, full_a, tau, np.asarray(force, dtype=float),
-        point, ground_force, ground_moment, agent.limits,
-    )  # fmt: skip
+        agent.name, names, moving, full_q, full_v, full_a, tau, force, point, root[:, :3] + force, moment, agent.limits
+    )
 
 
-def object_trajectory(
-    held: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array, data: pin.Data | None = None
-) -> ObjectTrajectory:
-    """Return the object's trajectory from its six coordinates and rates (K, 6) and all grasp forces (K, 3 agents).
+def bearing(model: pin.Model, carrier: int) -> Array:
+    """Return (nv,) 1 for the joints between the world and the joint ``carrier``, itself included, 0 for the others."""
+    on = np.zeros(model.nv)
+    for joint in model.supports[carrier].tolist()[1:]:
+        on[model.idx_vs[joint] : model.idx_vs[joint] + model.nvs[joint]] = 1.0
+    return on
 
-    ``data`` is room to work in; after the call it holds the placements of the last row.
-    """
-    model = held.model
-    data = data or model.createData()
+
+def object_trajectory(held: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array) -> ObjectTrajectory:
+    """Return the object's trajectory from its six coordinates and rates (K, 6) and all grasp forces (K, 3 agents)."""
+    model, data = held.model, held.model.createData()
     frames = [model.getFrameId(name) for name in held.grasp_frames]
-    quaternion, velocity, acceleration = np.zeros((len(x), 4)), np.zeros((len(x), 6)), np.zeros((len(x), 6))
-    points, wrench = np.zeros((len(x), len(frames), 3)), np.zeros((len(x), 6))
+    rotation, (q, v, a) = attitude(x[:, 3:])[0], free_flyer_state(x, xdot, xddot)
+    generalized, point = np.zeros((len(x), 6)), np.zeros((len(x), len(frames), 3))
     for k in range(len(x)):
-        q, v, a = free_flyer_state(x[k], xdot[k], xddot[k])
-        generalized = pin.rnea(model, data, q, v, a)
-        pin.framesForwardKinematics(model, data, q)
-        rotation = data.oMi[1].rotation
+        generalized[k] = pin.rnea(model, data, q[k], v[k], a[k])
+        pin.framesForwardKinematics(model, data, q[k])
         for i, frame in enumerate(frames):
-            points[k, i] = data.oMf[frame].translation
-            force = forces[k, 3 * i : 3 * i + 3]
-            generalized[:3] -= rotation.T @ force
-            generalized[3:] -= rotation.T @ (pin.skew(points[k, i] - x[k, :3]) @ force)
-        quaternion[k] = q[3:]
-        velocity[k] = [*xdot[k, :3], *(rotation @ v[3:])]
-        acceleration[k] = [*xddot[k, :3], *(rotation @ a[3:])]
-        wrench[k] = [*(rotation @ generalized[:3]), *generalized[3:]]
-    return ObjectTrajectory(held.name, x, xdot, xddot, quaternion, velocity, acceleration, points, wrench)
+            point[k, i] = data.oMf[frame].translation
+    force = np.reshape(forces, (len(x), len(frames), 3))
+    moment = cross(point - x[:, None, :3], force).sum(axis=1)
+    wrench = np.hstack([turned(rotation, generalized[:, :3]) - force.sum(axis=1),
+                        generalized[:, 3:] - turned(rotation.swapaxes(1, 2), moment)])  # fmt: skip
+    velocity = np.hstack([xdot[:, :3], turned(rotation, v[:, 3:])])
+    acceleration = np.hstack([xddot[:, :3], turned(rotation, a[:, 3:])])
+    return ObjectTrajectory(held.name, x, xdot, xddot, q[:, 3:], velocity, acceleration, point, wrench)
 
 
 def free_flyer_state(x: Array, xdot: Array, xddot: Array) -> tuple[Array, Array, Array]:
-    """Return Pinocchio's free-flyer q (7,), v (6,), a (6,) from the six coordinates and their rates (6,) each."""
-    roll, pitch, yaw = (pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", x[3:], strict=True))
-    rotation = roll @ pitch @ yaw
-    about_x, about_y, about_z = yaw.T @ pitch.T[:, 0], yaw.T[:, 1], np.array([0.0, 0.0, 1.0])
-    after_roll = about_y * xdot[4] + about_z * xdot[5]
-    omega = about_x * xdot[3] + after_roll
-    alpha = about_x * xddot[3] + about_y * xddot[4] + about_z * xddot[5]
+    """Return Pinocchio's free-flyer q (..., 7), v, a (..., 6) from the six coordinates and their rates (..., 6) each.
+
+    All that is done is analytic in its arguments, which may be complex.
+    """
+    (rotation, spin), rates = attitude(x[..., 3:]), xdot[..., 3:]
+    omega, body_rotation = turned(spin, rates), rotation.swapaxes(-1, -2)
     # The axes of roll and pitch turn with the rotations that follow them.
-    alpha += pin.skew(about_x * xdot[3]) @ after_roll + pin.skew(about_y * xdot[4]) @ (about_z * xdot[5])
-    linear = rotation.T @ xdot[:3]
-    q = np.concatenate([x[:3], pin.Quaternion(rotation).coeffs()])
-    v = np.concatenate([linear, omega])
-    a = np.concatenate([rotation.T @ xddot[:3] - pin.skew(omega) @ linear, alpha])
-    return q, v, a
+    about_x, after_roll = spin[..., 0] * rates[..., :1], spin[..., 1] * rates[..., 1:2] + spin[..., 2] * rates[..., 2:]
+    turning = cross(about_x, after_roll) + cross(spin[..., 1] * rates[..., 1:2], spin[..., 2] * rates[..., 2:])
+    linear = turned(body_rotation, xdot[..., :3])
+    v = np.concatenate([linear, omega], axis=-1)
+    a = np.concatenate(
+        [turned(body_rotation, xddot[..., :3]) - cross(omega, linear), turned(spin, xddot[..., 3:]) + turning],
+        axis=-1,
+    )
+    return np.concatenate([x[..., :3], quaternion(x[..., 3:])], axis=-1), v, a
+
+
+def attitude(angles: Array) -> tuple[Array, Array]:
+    """Return R = Rx Ry Rz (..., 3, 3) and the map (..., 3, 3) from the angles' rates to the body's angular velocity.
+
+    ``angles`` (..., 3) are roll, pitch and yaw; the angular velocity is along the body's axes.
+    """
+    (cr, cp, cy), (sr, sp, sy) = _each(np.cos(angles)), _each(np.sin(angles))
+    zero, one = np.zeros_like(cr), np.ones_like(cr)
+    rotation = np.stack(
+        [cp * cy, -cp * sy, sp,
+         cr * sy + sr * sp * cy, cr * cy - sr * sp * sy, -sr * cp,
+         sr * sy - cr * sp * cy, sr * cy + cr * sp * sy, cr * cp],
+        axis=-1,
+    )  # fmt: skip
+    spin = np.stack([cp * cy, sy, zero, -cp * sy, cy, zero, sp, zero, one], axis=-1)
+    shape = (*np.shape(angles)[:-1], 3, 3)
+    return rotation.reshape(shape), spin.reshape(shape)
+
+
+def quaternion(angles: Array) -> Array:
+    """Return the quaternion (..., 4), x y z w, of Rx Ry Rz for roll, pitch and yaw (..., 3)."""
+    half = np.asarray(angles) / 2
+    (cr, cp, cy), (sr, sp, sy) = _each(np.cos(half)), _each(np.sin(half))
+    return np.stack(
+        [sr * cp * cy + cr * sp * sy, cr * sp * cy - sr * cp * sy,
+         cr * cp * sy + sr * sp * cy, cr * cp * cy - sr * sp * sy],
+        axis=-1,
+    )  # fmt: skip
+
+
+def turned(matrix: Array, vector: Array) -> Array:
+    """Return matrices (..., m, n) times vectors (..., n)."""
+    product: Array = np.einsum("...ij,...j->...i", matrix, vector)
+    return product
+
+
+def cross(left: Array, right: Array) -> Array:
+    """Return the cross product of vectors (..., 3); of a few vectors NumPy's own takes several times as long."""
+    (a, b, c), (x, y, z) = _each(left), _each(right)
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+
+
+def _each(vector: Array) -> tuple[Array, Array, Array]:
+    return vector[..., 0], vector[..., 1], vector[..., 2]

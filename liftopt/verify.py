@@ -31,8 +31,8 @@ def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tol
         result: where the solver stopped.
         tolerance: largest KKT error.
     """
-    knots = motion_at(problem, spline, result.x, spline.phase)
     fine = motion_at(problem, spline, result.x, np.linspace(0.0, 1.0, FINER * spline.intervals + 1))
+    knots = fine.every(FINER)
     optimality = kkt_error(problem, result.x, result.multipliers)
     checks = [
         _closure("closure at the knots", knots, AT_KNOTS, problem.mesh.closure_knots),

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from liftopt.cli import main
-from liftopt.errors import InfeasibleError, InputError
+from liftopt.errors import InputError, SolverError
 from liftopt.scenario import Scenario, load_scenario
 
 SCRIPT = Path(__file__).parents[1] / "scripts" / "solve.py"
@@ -115,11 +115,7 @@ def test_read_only_folder_is_bad_input(lift: FakeLift, capsys: pytest.CaptureFix
     [
         (InputError("table.mass", 50.0, "must be less"), 2, "table.mass = 50.0: must be less"),
         (OSError(errno.ENOSPC, "No space left on device"), 2, "No space left on device"),
-        (
-            InfeasibleError("robot cannot reach the start", constraint="closure", who="robot", amount=0.3, unit="m"),
-            3,
-            "robot cannot reach the start",
-        ),
+        (SolverError("IPOPT cannot be loaded"), 3, "IPOPT cannot be loaded"),
         (KeyboardInterrupt(), 130, "interrupted"),
     ],
 )
@@ -139,13 +135,13 @@ def test_a_solve_that_ends_without_result_leaves_none_and_keeps_an_older_one(
 
 
 def test_failure_as_json_names_its_kind(lift: FakeLift, capsys: pytest.CaptureFixture[str]) -> None:
-    lift.raises = InfeasibleError("too far", constraint="closure", who="robot", amount=0.3, unit="m")  # type: ignore[assignment]
+    lift.raises = SolverError("no such library")  # type: ignore[assignment]
     assert main(["solve", "--json"]) == 3
     assert json.loads(capsys.readouterr().out) == {
-        "status": "InfeasibleError",
+        "status": "SolverError",
         "solved": False,
         "exit_status": 3,
-        "error": {"message": "too far", "constraint": "closure", "who": "robot", "amount": 0.3, "unit": "m"},
+        "error": {"message": "no such library"},
     }
     assert main(["solve", "--json", "--set", "table.mass=nan"]) == 2
     assert json.loads(capsys.readouterr().out)["error"]["key"] == "table.mass"
@@ -227,3 +223,18 @@ def test_script_is_the_same_command_and_answers_bad_input_without_loading_the_so
     imported = {line.rpartition("|")[2].strip() for line in timed}
     assert "liftopt.cli" in imported
     assert imported.isdisjoint({"numpy", "casadi", "pinocchio", "rich", "liftopt.lift"})
+
+
+def test_a_solve_imports_nothing_that_it_does_not_need() -> None:
+    """Each of these takes longer to import than a lift to solve."""
+    code = """
+import sys
+import liftopt.lift, liftopt.summary, liftopt.summary_text, h5netcdf
+from liftopt.scenario import load_scenario
+from liftopt.scene import agents_of, object_of
+agents_of(load_scenario()), object_of(load_scenario())
+heavy = {"matplotlib", "meshcat", "scipy.interpolate", "scipy.optimize", "trimesh", "xarray", "yourdfpy"}
+print(*heavy.intersection(sys.modules))
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []

@@ -51,7 +51,7 @@ def _contents(folder: Path) -> dict[str, bytes]:
 
 
 # From the first imports to the solve; a whole run takes some 4 s on an idle machine.
-@pytest.mark.parametrize("after", [0.3, 0.9, 1.5, 2.0, 2.5])
+@pytest.mark.parametrize("after", [0.2, 0.4, 0.8, 1.2, 2.0])
 def test_ctrl_c_leaves_no_result_and_no_trace(after: float, tmp_path: Path) -> None:
     out = tmp_path / "made" / "result"
     run = _child(SOLVE, str(out))
@@ -60,7 +60,7 @@ def test_ctrl_c_leaves_no_result_and_no_trace(after: float, tmp_path: Path) -> N
     began = time.monotonic()
     _, err = run.communicate(timeout=60)
     assert time.monotonic() - began < 20.0
-    if run.returncode == 0:  # it was done already
+    if run.returncode == 0 or out.exists():  # it was written already
         assert load_result(out).solved
         return
     assert not out.exists()
@@ -78,15 +78,15 @@ def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -
     from liftopt.lift import lift
     from liftopt.scenario import load_scenario
 
-    usual, evaluations = ipopt._Deadline.eval, []
+    usual, evaluations = ipopt._Deadline.eval_buffer, []
 
-    def eval_and_interrupt(self: Any, arguments: Any) -> list[int]:
+    def eval_and_interrupt(self: Any, arguments: Any, results: Any) -> int:
         evaluations.append(None)
         if len(evaluations) == 7:
             signal.raise_signal(signal.SIGINT)
-        return usual(self, arguments)
+        return usual(self, arguments, results)
 
-    monkeypatch.setattr(ipopt._Deadline, "eval", eval_and_interrupt)
+    monkeypatch.setattr(ipopt._Deadline, "eval_buffer", eval_and_interrupt)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):

@@ -156,13 +156,11 @@ def test_no_solution_is_exit_3_with_the_reason_and_the_best_iterate_marked(
 
 def test_time_for_compiling_is_not_taken_from_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock: a solver that takes long to build, as one that compiles at first use, leaves the whole limit."""
-    from liftopt import lift as module
-    from liftopt.collocation.problem import Team
+    from liftopt import workshop
     from liftopt.collocation.spline import RestToRestSpline
-    from liftopt.scene import agents_of, object_of
+    from liftopt.lift import Search
 
-    monkeypatch.setattr(module, "Banded", lambda *_: time.sleep(1.0))
+    monkeypatch.setattr(workshop, "Banded", lambda *_: time.sleep(1.0))
     scenario = load_scenario("table5", ["solver.name=banded", "solver.time_limit=10"])
-    team = Team.of(agents_of(scenario), object_of(scenario))
-    search = module._Search(scenario, team, RestToRestSpline(8), lambda line: None)
+    search = Search(scenario, workshop.Workshop(), RestToRestSpline(8), lambda line: None)
     assert search.deadline - time.monotonic() == pytest.approx(9.0, abs=0.5)

@@ -175,6 +175,16 @@ def _other_scenario(folder: Path) -> None:
     (folder / "scenario.toml").write_text("schema = 1\n")
 
 
+def _spoiled(name: str, value: float) -> Callable[[Path], None]:
+    """Let the last value of a variable be another."""
+    return _edit(lambda file: file[name].__setitem__(tuple(size - 1 for size in file[name].shape), value))
+
+
+def _model(name: str, change: Callable[[str], str]) -> Callable[[Path], object]:
+    """Change the text of a model."""
+    return lambda folder: (folder / "models" / name).write_text(change((folder / "models" / name).read_text()))
+
+
 READ, WHOLE = "solution.nc: cannot be read as NetCDF-4", "solution.nc: is no whole result of liftopt"
 BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "gone": (lambda folder: (folder / "solution.nc").unlink(), "result: is no result: there is no file solution.nc"),
@@ -192,6 +202,18 @@ BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "record is empty": (_with_attribute("record", "{}"), WHOLE),
     "record is a list": (_with_attribute("record", "[]"), WHOLE),
     "objective is text": (_with_attribute("objective", "low"), WHOLE),
+    "a torque is NaN": (_spoiled("robot_tau", np.nan), "robot_tau holds values that are not finite"),
+    "a force is infinite": (_spoiled("grasp_force", -np.inf), "grasp_force holds values that are not finite"),
+    "time is NaN": (_spoiled("time", np.nan), "time holds values that are not finite"),
+    "time turns back": (_spoiled("time", 0.0), "time does not increase"),
+    "no models": (lambda folder: shutil.rmtree(folder / "models"), "models/human_arm.urdf: cannot be read"),
+    "a model is gone": (lambda folder: (folder / "models" / "table.urdf").unlink(), "table.urdf: cannot be read"),
+    "a model is empty": (_model("table.urdf", lambda text: ""), "models: holds a model that cannot be read"),
+    "a model is cut": (_model("sawyer.urdf", lambda text: text[:2000]), "models: holds a model that cannot be read"),
+    "a model of fewer joints": (
+        _model("human_arm.urdf", lambda text: text.replace('type="revolute"', 'type="fixed"')),
+        "human_q has shape (21, 13), expected (21, 3)",
+    ),
     "no scenario": (lambda folder: (folder / "scenario.toml").unlink(), "scenario.toml: no such file"),
     "another scenario": (_other_scenario, "duration: is missing"),
 }

@@ -55,6 +55,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "starts": 4,
             "tolerance": 1e-6,
             "seed": 0,
+            "workers": 1,
             "time_limit": 50.0,
         },
     }

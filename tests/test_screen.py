@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import time
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -11,6 +13,7 @@ import pytest
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.screen import Obstacle, screen, too_fast
 from liftopt.collocation.spline import RestToRestSpline
+from liftopt.multibody.agent import HalfSpace
 from liftopt.scenario import load_scenario
 from liftopt.scene import agents_of, object_of, task_of
 
@@ -84,6 +87,35 @@ def test_a_weak_joint_is_named() -> None:
             in obstacle.message
         )
         assert obstacle.amount > 1.0
+
+
+def test_a_joint_that_cannot_bend_enough_is_named() -> None:
+    """A trunk and an elbow that cannot bend keep the hand from 0.4 m ahead of the feet; bending, it gets there."""
+    problem = _problem()
+    human, robot = problem.team.agents
+    q_lower, q_upper = human.limits.q_lower.copy(), human.limits.q_upper.copy()
+    q_lower[:3], q_upper[:3], q_lower[6], q_upper[6] = -0.01, 0.01, -0.01, 0.0
+    stiff = replace(human, limits=replace(human.limits, q_lower=q_lower, q_upper=q_upper))
+    obstacles, _ = screen(replace(problem, team=replace(problem.team, agents=(stiff, robot))), 0, time.monotonic() + 30)
+    assert obstacles
+    for obstacle in obstacles:
+        assert obstacle.constraint == "closure" and obstacle.amount > 1e-3
+        named = re.search(r"\(with (.*) beyond the range of motion it would reach\)", obstacle.message)
+        assert named and re.search(r"human_Q\d+ \d+ deg", named.group(1))
+
+
+def test_a_half_space_that_keeps_the_hand_away_is_named() -> None:
+    """The hand must be 0.40 m ahead of the feet; a wall at 0.55 m leaves it 0.15 m outside."""
+    problem = _problem()
+    human, robot = problem.team.agents
+    walled = replace(human, keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.55))
+    obstacles, _ = screen(
+        replace(problem, team=replace(problem.team, agents=(walled, robot))), 0, time.monotonic() + 30
+    )
+    assert [(o.constraint, o.who, o.unit) for o in obstacles] == [("keep_in", "human", "m")] * 2
+    for obstacle in obstacles:
+        assert obstacle.amount == pytest.approx(0.15, abs=1e-4)
+        assert "the human's grasp would lie 0.150 m outside its half-space" in obstacle.message
 
 
 def test_a_load_that_some_posture_holds_is_not_called_too_heavy() -> None:

@@ -169,15 +169,16 @@ def constant(matrix: sp.csc_matrix) -> Any:
     matrix.sum_duplicates()
     matrix.sort_indices()
     matrix.eliminate_zeros()
-    return ca.DM(_sparsity(matrix), matrix.data)
+    return ca.DM(to_sparsity(matrix), matrix.data)
 
 
 def _fill(pattern: Pattern, values: Sequence[Any]) -> Any:
     """Return the sparse matrix whose nonzeros are ``scatter @ values + offset``."""
     nonzeros = ca.mtimes(constant(pattern.scatter), ca.vertcat(*values)) + ca.DM(pattern.offset)
-    return ca.MX(_sparsity(pattern.shape), ca.densify(nonzeros))
+    return ca.MX(to_sparsity(pattern.shape), ca.densify(nonzeros))
 
 
-def _sparsity(matrix: sp.csc_matrix) -> Any:
+def to_sparsity(matrix: sp.csc_matrix) -> Any:
+    """Return the sparsity of a SciPy matrix, whose data have no meaning."""
     rows, columns = matrix.shape
     return ca.Sparsity(rows, columns, matrix.indptr.tolist(), matrix.indices.tolist())

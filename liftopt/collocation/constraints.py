@@ -18,6 +18,7 @@ from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
 
 Array = npt.NDArray[np.float64]
+Index = npt.NDArray[np.int64]
 BALANCE_ROWS = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
 
 
@@ -44,19 +45,29 @@ class Block:
 
 @dataclass
 class _Rows:
-    """Triplets of G and A while they grow."""
+    """Triplets of G and A while they grow, and the blocks that are done."""
 
     layout: Layout
     outputs: tuple[int, ...]
     n: int = 0
-    combine: list[tuple[int, int, float]] = field(default_factory=list)
-    linear: list[tuple[int, int, float]] = field(default_factory=list)
+    combine: list[tuple[Index, Index, Array]] = field(default_factory=list)
+    linear: list[tuple[Index, Index, Array]] = field(default_factory=list)
     blocks: list[Block] = field(default_factory=list)
 
-    def output(self, part: int, knot: int, row: int) -> int:
-        """Return the position of an output of a part at a knot in C."""
-        knots = len(self.layout.mesh.phase)
-        return knots * sum(self.outputs[:part]) + knot * self.outputs[part] + row
+    @property
+    def knots(self) -> Index:
+        """All knots."""
+        return np.arange(len(self.layout.mesh.phase))
+
+    def outputs_at(self, part: int, knots: Index, which: Index) -> Index:
+        """Return the positions (knots, which) in C of some outputs of a part."""
+        first = len(self.layout.mesh.phase) * sum(self.outputs[:part])
+        return first + self.outputs[part] * knots[:, None] + which
+
+    def add(self, outputs: Index, factors: Array | float) -> None:
+        """Add outputs (knots, m), times factors, to the next rows: m a knot."""
+        rows = self.n + np.arange(outputs.size)
+        self.combine.append((rows, outputs.ravel(), np.broadcast_to(factors, outputs.shape).ravel()))
 
     def close(self, name: str, who: str, labels: tuple[str, ...], lower: Array, upper: Array, repeats: int) -> None:
         """End a block of ``repeats`` knots whose rows have the same bounds at each."""
@@ -75,8 +86,7 @@ class Constraints:
 
     def same_rows(self, other: Constraints) -> bool:
         """Whether the rows are the same functions, scales included, so that only bounds and parameters may differ."""
-        pairs = ((self.combine, other.combine), (self.linear, other.linear))
-        return self is other or all(a.shape == b.shape and (a != b).nnz == 0 for a, b in pairs)
+        return self is other or (_same(self.combine, other.combine) and _same(self.linear, other.linear))
 
     @property
     def lower(self) -> Array:
@@ -120,71 +130,69 @@ def build_constraints(
 
 def _closure(rows: _Rows, i: int, who: str) -> None:
     """Eq. 16: the agent's grasp point is the object's, p_world_grasp - p_world_edge = 0 [m]."""
-    n, held = rows.layout.coordinates[i], rows.layout.n_agents
-    knots = rows.layout.mesh.closure_knots
-    for k, knot in enumerate(knots):
-        for axis in range(3):
-            row = rows.n + 3 * k + axis
-            rows.combine.append((row, rows.output(i, knot, n + axis), 1.0))
-            rows.combine.append((row, rows.output(held, knot, OBJECT_SIZE + 3 * i + axis), -1.0))
+    knots, axes = rows.layout.mesh.closure_knots, np.arange(3)
+    rows.add(rows.outputs_at(i, knots, rows.layout.coordinates[i] + axes), 1.0)
+    rows.add(rows.outputs_at(rows.layout.n_agents, knots, OBJECT_SIZE + 3 * i + axes), -1.0)
     rows.close("closure", who, ("x", "y", "z"), np.zeros(3), np.zeros(3), len(knots))
 
 
 def _torque(rows: _Rows, i: int, agent: Agent) -> None:
     """Eq. 12: torques as shares of the larger of their directional limits."""
-    n, limits = rows.layout.coordinates[i], agent.limits
+    limits, joints = agent.limits, np.arange(rows.layout.coordinates[i])
     scale = np.maximum(np.abs(limits.tau_lower), np.abs(limits.tau_upper))
-    knots = len(rows.layout.mesh.phase)
-    for k in range(knots):
-        rows.combine += [(rows.n + n * k + j, rows.output(i, k, j), 1.0 / scale[j]) for j in range(n)]
-    rows.close("torque", agent.name, agent.moving_joints, limits.tau_lower / scale, limits.tau_upper / scale, knots)
+    rows.add(rows.outputs_at(i, rows.knots, joints), 1.0 / scale)
+    lower, upper = limits.tau_lower / scale, limits.tau_upper / scale
+    rows.close("torque", agent.name, agent.moving_joints, lower, upper, len(rows.knots))
 
 
 def _keep_in(rows: _Rows, i: int, agent: Agent) -> None:
     """Eq. 14: the grasp point stays in its half-space [m]."""
     if agent.keep_in is None:
         return
-    n, knots = rows.layout.coordinates[i], len(rows.layout.mesh.phase)
-    for k in range(knots):
-        for axis in np.flatnonzero(agent.keep_in.normal):
-            rows.combine.append((rows.n + k, rows.output(i, k, n + int(axis)), float(agent.keep_in.normal[axis])))
-    rows.close("keep_in", agent.name, ("distance",), np.array([agent.keep_in.offset]), np.array([np.inf]), knots)
+    n = rows.layout.coordinates[i]
+    for axis in np.flatnonzero(agent.keep_in.normal):
+        rows.add(rows.outputs_at(i, rows.knots, np.array([n + axis])), float(agent.keep_in.normal[axis]))
+    offset, above = np.array([agent.keep_in.offset]), np.array([np.inf])
+    rows.close("keep_in", agent.name, ("distance",), offset, above, len(rows.knots))
 
 
 def _grasp_force(rows: _Rows, i: int, who: str, cap: float) -> None:
     """The norm of the grasp force, squared, as a share of its cap squared: the squeeze is free otherwise."""
-    n, knots = rows.layout.coordinates[i], len(rows.layout.mesh.phase)
-    rows.combine += [(rows.n + k, rows.output(i, k, n + FORCE_SIZE), 1.0 / cap**2) for k in range(knots)]
-    rows.close("grasp_force", who, ("norm",), np.array([-np.inf]), np.ones(1), knots)
+    squared = np.array([rows.layout.coordinates[i] + FORCE_SIZE])
+    rows.add(rows.outputs_at(i, rows.knots, squared), 1.0 / cap**2)
+    rows.close("grasp_force", who, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
 
 
 def served_rows(held: LiftedObject, tolerance: float) -> list[int]:
     """Return the rows of the balance to ask for: all six with a tolerance, as in the paper, else those served."""
-    return [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != held.unserved_row()]
+    unserved = held.unserved_row()
+    return [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
 
 
 def _balance(rows: _Rows, part: int, held: LiftedObject, tolerance: float) -> None:
     """Eq. 17 [N, Nm]."""
     served = served_rows(held, tolerance)
-    knots = len(rows.layout.mesh.phase)
-    for k in range(knots):
-        rows.combine += [(rows.n + len(served) * k + j, rows.output(part, k, r), 1.0) for j, r in enumerate(served)]
+    rows.add(rows.outputs_at(part, rows.knots, np.array(served)), 1.0)
     bound = np.full(len(served), tolerance)
-    rows.close("balance", held.name, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, knots)
+    rows.close("balance", held.name, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, len(rows.knots))
 
 
 def _velocity(rows: _Rows, part: int, who: str, labels: tuple[str, ...], limit: Array) -> None:
     """Speed by the phase, at the hull of the derivative: within it the limit holds at all times."""
     slope, control = rows.layout.mesh.slope, rows.layout.control[:, rows.layout.columns(part)]
-    n = control.shape[1]
-    for r, i in zip(*np.nonzero(slope), strict=True):
-        rows.linear += [(rows.n + n * r + j, int(control[i, j]), slope[r, i]) for j in range(n)]
+    n, (r, i) = control.shape[1], np.nonzero(slope)
+    row = rows.n + n * r[:, None] + np.arange(n)
+    rows.linear.append((row.ravel(), control[i].ravel(), np.repeat(slope[r, i], n)))
     if len(slope):
         rows.close("velocity", who, labels, -limit, limit, len(slope))
 
 
-def _matrix(triplets: list[tuple[int, int, float]], shape: tuple[int, int]) -> sp.csc_matrix:
-    if not triplets:
-        return sp.csc_matrix(shape)
-    row, col, value = zip(*triplets, strict=True)
+def _matrix(triplets: list[tuple[Index, Index, Array]], shape: tuple[int, int]) -> sp.csc_matrix:
+    row, col, value = (np.concatenate(part) for part in zip(*triplets, strict=True))
     return sp.csc_matrix((value, (row, col)), shape=shape)
+
+
+def _same(one: sp.csc_matrix, other: sp.csc_matrix) -> bool:
+    """Whether two matrices that were built alike are equal, entry by entry as they are stored."""
+    parts = ((one.indptr, other.indptr), (one.indices, other.indices), (one.data, other.data))
+    return one.shape == other.shape and all(np.array_equal(a, b) for a, b in parts)

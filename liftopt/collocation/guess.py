@@ -1,41 +1,37 @@
 """Where the solver starts: the paper's naive guess and pairs of static postures joined by a smooth motion.
 
-Postures come from inverse kinematics with statics: the same kernels on a mesh of one knot at rest, so that a posture
-holds the object within every limit at the least squared torque. Random seeds spread over the ranges of motion find
-different arm configurations; pairs are ranked by the torques they take and whether the joints are fast enough.
+Random seeds spread over the ranges of motion find different arm configurations that hold the object at the start;
+each leads to one at the end, and that back to another at the start. All pairs are ranked by the objective of the
+motion between them, the torques they take and whether the joints are fast enough.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import product
 
-import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
-from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
-from liftopt.collocation.spline import Mesh
+from liftopt.collocation.batch import Batch
+from liftopt.collocation.layout import OBJECT_SIZE
+from liftopt.collocation.postures import Posture, PostureSolver, distinct, seed_coordinates
+from liftopt.collocation.problem import Problem
 from liftopt.collocation.task import LiftTask
 
 Array = npt.NDArray[np.float64]
-# Seeds spread by this share of each joint's range about the comfortable posture.
-SPREAD = 0.25
 # Peak speed of the quintic blend over its mean speed.
 QUINTIC_PEAK = 1.875
-POSTURE_WEIGHT = 1e-2
-# Over eight varied scenarios, 95 % of the postures found took at most 93 iterations.
-MAX_ITERATIONS = 100
 # Holding still at each end for half the time, halved again: as much as the objective of the blend on average.
 STATIC_WEIGHT = 0.25
-# Seeds after which an end that no posture was found for is given up.
-HOPELESS = 4
-# Pairs nearer than this in every joint [rad] mostly lead to the same optimum.
-DIFFERENT = 0.3
-SEEDS_A_START = 3
+# Postures nearer than this in every joint [rad] lead to the same ones.
+SAME = 0.03
+# Pairs that share a posture to this [rad], or take the same torques to this share, mostly lead to the same optimum.
+DIFFERENT, SAME_COST = 0.3, 0.01
+# Seeds tried at once, and rounds of them after which an end that no posture was found for is given up.
+SEEDS, ROUNDS = 16, 3
 TOO_FAST_WEIGHT = 1e3
 NAIVE_FORCE = 10.0
 
@@ -53,46 +49,6 @@ class Start:
     x: Array
 
 
-@dataclass(frozen=True)
-class Posture:
-    """A static posture that holds the object.
-
-    Attributes:
-        coordinates: (n,) joints of every agent, then the object's six coordinates.
-        force: (3 agents,) grasp forces on the object [N].
-        cost: objective of holding still for the task's duration.
-    """
-
-    coordinates: Array
-    force: Array
-    cost: float
-
-
-class PostureSolver:
-    """Static postures of a team with the object at a given pose."""
-
-    def __init__(self, team: Team, task: LiftTask) -> None:
-        self._problem = Problem(team, task, Mesh.at_rest(), POSTURE_WEIGHT)
-        self._solver = Ipopt(self._problem, IpoptOptions(max_iterations=MAX_ITERATIONS))
-        self._at_pose: dict[bytes, Problem] = {}
-
-    def solve(self, pose: Array, seed: Array, deadline: float) -> Posture | None:
-        """Return the posture found from ``seed`` (coordinates), or None; NaN in ``pose`` (6,) leaves that free."""
-        key = pose.tobytes()
-        if key not in self._at_pose:
-            self._at_pose[key] = replace(self._problem, task=replace(self._problem.task, start=pose, end=pose))
-        problem = self._at_pose[key]
-        model = problem.team.held.model
-        weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
-        share = np.zeros(problem.layout.force.shape)
-        share[:, 2::FORCE_SIZE] = weight / len(problem.team.agents)
-        result = self._solver.solve(problem.pack(seed[None, :], share), deadline=deadline, problem=problem)
-        if not result.converged:
-            return None
-        control, force = problem.unpack(result.x)
-        return Posture(control[0], force[0], result.objective)
-
-
 def naive_start(problem: Problem) -> Start:
     """Return the paper's guess: every control point 0, every force component 10 N (clipped to the bounds)."""
     layout = problem.layout
@@ -100,7 +56,12 @@ def naive_start(problem: Problem) -> Start:
 
 
 def posture_starts(
-    problem: Problem, count: int, seed: int, deadline: float, say: Callable[[str], None] | None = None
+    problem: Problem,
+    count: int,
+    seed: int,
+    deadline: float,
+    say: Callable[[str], None] | None = None,
+    postures: PostureSolver | None = None,
 ) -> list[Start]:
     """Return up to ``count`` starts from the best posture pairs, best first; fewer if fewer can be found.
 
@@ -110,71 +71,84 @@ def posture_starts(
         seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
         deadline: ``time.monotonic`` value past which the search stops.
         say: hears of progress.
+        postures: solver for the problem's team, to be used again; None: one is made.
     """
-    task, rng, rate = problem.task, np.random.default_rng(seed), _Ranking(problem)
-    postures = PostureSolver(problem.team, task)
-    pairs: list[tuple[float, Posture, Posture]] = []
-    for attempt in range(SEEDS_A_START * count + HOPELESS):
-        if time.monotonic() > deadline or (attempt == HOPELESS and not pairs):
+    task, rng = problem.task, np.random.default_rng(seed)
+    if postures is None:
+        # Its kernels may have to be compiled, once: that is no part of the search.
+        began = time.monotonic()
+        postures = PostureSolver(problem.team, task, say)
+        deadline += time.monotonic() - began
+    pairs: list[tuple[Posture, Posture]] = []
+    for attempt in range(ROUNDS):
+        if time.monotonic() > deadline or pairs:
             break
         if say:
-            say(f"postures at both ends: {len(pairs)} pairs after {attempt} seeds")
-        first = postures.solve(task.start, seed_coordinates(problem, task.start, rng if attempt else None), deadline)
-        last = first and postures.solve(task.end, first.coordinates, deadline)
-        if first and last:
-            pairs.append((rate(first, last), first, last))
-            # The way back finds a start posture nearer to the end posture.
-            again = postures.solve(task.start, last.coordinates, deadline)
-            if again:
-                pairs.append((rate(again, last), again, last))
-    pairs.sort(key=lambda pair: pair[0])
-    chosen: list[tuple[float, Posture, Posture]] = []
-    for pair in pairs:
-        if len(chosen) < count and all(_differ(pair, other) for other in chosen):
-            chosen.append(pair)
-    return [Start(f"posture pair {i + 1}", blend(problem, a, b)) for i, (_, a, b) in enumerate(chosen)]
+            say(f"postures at both ends, from {SEEDS} seeds" + (" more" if attempt else ""))
+        seeds = [seed_coordinates(problem, task.start, rng if attempt or i else None) for i in range(SEEDS)]
+        pairs = _pairs(postures, task, seeds, deadline)
+    chosen = choose([pairs[i] for i in np.argsort(_promise(problem, pairs), kind="stable")], count)
+    return [Start(f"posture pair {i + 1}", blend(problem, *pair)) for i, pair in enumerate(chosen)]
 
 
-def seed_coordinates(problem: Problem, pose: Array, rng: np.random.Generator | None) -> Array:
-    """Return coordinates to search a posture from: the comfortable ones, or spread about them by ``rng``."""
-    task = problem.task
-    guess = np.where(np.isnan(pose), np.clip(0.0, task.pose_lower, task.pose_upper), pose)
-    blocks = []
-    for agent in problem.team.agents:
-        q, limits = agent.posture, agent.limits
-        if rng is not None:
-            q = q + SPREAD * (limits.q_upper - limits.q_lower) * rng.standard_normal(len(q))
-        blocks.append(np.clip(q, limits.q_lower, limits.q_upper))
-    return np.concatenate([*blocks, guess])
+def _pairs(
+    postures: PostureSolver, task: LiftTask, seeds: list[Array], deadline: float
+) -> list[tuple[Posture, Posture]]:
+    """Return all pairs of the postures found at the start, at the end from these, and at the start from those."""
+    first = distinct(postures.search(task.start, seeds, deadline), SAME)
+    last = distinct(postures.search(task.end, [p.coordinates for p in first], deadline), SAME)
+    again = postures.search(task.start, [p.coordinates for p in last], deadline)
+    return list(product(distinct([*first, *again], SAME), last))
 
 
-class _Ranking:
-    """What a posture pair promises: the objective of its blend, its static torques, and how much it is too fast."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        nlp = problem.nlp
-        self.objective = ca.Function("objective", [nlp.x, nlp.p], [nlp.f])
-        self.speed = np.concatenate([agent.limits.velocity for agent in problem.team.agents])
-
-    def __call__(self, first: Posture, last: Posture) -> float:
-        travel = np.abs(last.coordinates - first.coordinates)[:-OBJECT_SIZE]
-        excess = np.maximum(0.0, QUINTIC_PEAK * travel / self.problem.task.duration - self.speed)
-        blended = float(self.objective(blend(self.problem, first, last), self.problem.parameters))
-        return blended + STATIC_WEIGHT * (first.cost + last.cost) + TOO_FAST_WEIGHT * float(excess.sum())
+def _promise(problem: Problem, pairs: list[tuple[Posture, Posture]]) -> Array:
+    """Return what each pair seems to lead to: the objective of its blend, its static torques, and what is too fast."""
+    if not pairs:
+        return np.zeros(0)
+    speed = np.concatenate([agent.limits.velocity for agent in problem.team.agents])
+    travel = np.array([np.abs(last.coordinates - first.coordinates)[:-OBJECT_SIZE] for first, last in pairs])
+    excess = np.maximum(0.0, QUINTIC_PEAK * travel / problem.task.duration - speed).sum(axis=1)
+    held = np.array([first.cost + last.cost for first, last in pairs])
+    blended = Batch(problem).objective(_blends(problem, pairs))
+    promise: Array = blended + STATIC_WEIGHT * held + TOO_FAST_WEIGHT * excess
+    return promise
 
 
-def _differ(one: tuple[float, Posture, Posture], other: tuple[float, Posture, Posture]) -> bool:
-    ends = [np.abs(a.coordinates - b.coordinates).max() for a, b in zip(one[1:], other[1:], strict=True)]
-    return float(max(ends)) > DIFFERENT
+def choose(pairs: list[tuple[Posture, Posture]], count: int) -> list[tuple[Posture, Posture]]:
+    """Return the first ``count`` pairs that mostly lead to different optima."""
+    chosen: list[tuple[Posture, Posture]] = []
+    # Pairs that share a posture come after all those that share none.
+    for alike in (lambda one, other: _share(one, other) or _as_heavy(one, other), _as_heavy):
+        for pair in pairs:
+            if len(chosen) < count and not any(alike(pair, other) for other in chosen):
+                chosen.append(pair)
+    return chosen
+
+
+def _share(one: tuple[Posture, Posture], other: tuple[Posture, Posture]) -> bool:
+    return any(np.abs(a.coordinates - b.coordinates).max() < DIFFERENT for a, b in zip(one, other, strict=True))
+
+
+def _as_heavy(one: tuple[Posture, Posture], other: tuple[Posture, Posture]) -> bool:
+    return all(abs(a.cost - b.cost) < SAME_COST * b.cost for a, b in zip(one, other, strict=True))
 
 
 def blend(problem: Problem, first: Posture, last: Posture) -> Array:
     """Return unknowns that join two postures by the quintic of minimum jerk, sampled where the control points act."""
+    x: Array = _blends(problem, [(first, last)])[0]
+    return x
 
-    def quintic(s: Array) -> Array:
-        return (10 * s**3 - 15 * s**4 + 6 * s**5)[:, None]
 
-    control = first.coordinates + (last.coordinates - first.coordinates) * quintic(problem.mesh.control_phase)
-    force = first.force + (last.force - first.force) * quintic(problem.mesh.phase)
-    return problem.pack(control, force)
+def _blends(problem: Problem, pairs: list[tuple[Posture, Posture]]) -> Array:
+    """Return the unknowns (B, n_x) of the blend of each pair, within their bounds."""
+
+    def join(phase: Array, ends: Array) -> Array:
+        share = (10 * phase**3 - 15 * phase**4 + 6 * phase**5)[:, None]
+        return np.asarray(ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * share)
+
+    x = np.empty((len(pairs), problem.layout.n_x))
+    coordinates = np.array([[posture.coordinates for posture in pair] for pair in pairs])
+    forces = np.array([[posture.force for posture in pair] for pair in pairs])
+    x[:, problem.layout.control] = join(problem.mesh.control_phase, coordinates)
+    x[:, problem.layout.force] = join(problem.mesh.phase, forces)
+    return np.asarray(np.clip(x, *problem.bounds()))

@@ -1,9 +1,9 @@
-"""The knot functions as fast kernels: compiled with the C compiler, cached between runs by content.
+"""The knot functions as fast kernels: compiled with the C compiler, kept between runs by content.
 
-A kernel's key digests all that it is generated from, so a change of topology, of the generating code or of a library's
-version makes another file. Files appear by renaming, whole or not at all, so processes that start at once on a cold
-cache do not disturb each other. A file carries the digest of its own bytes and must belong to the user: what is
-damaged or somebody else's is never loaded. Without a compiler, CasADi's virtual machine evaluates the same functions.
+A kernel's key digests all that it is generated from, so a change of topology, of the generating code, of a library's
+version or of the compiler's options makes another file; ``libraries`` says where files are and which are trusted.
+Processes that start at once on a cold cache do not disturb each other. Without a compiler, CasADi's virtual machine
+evaluates the same functions.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from liftopt.collocation import dynamics
 from liftopt.collocation.dynamics import KnotFunctions, Topology
+from liftopt.collocation.libraries import cache_folder, find_library, keep
 
 # -O1: a higher level takes minutes and evaluates no faster.
 FLAGS = ("-O1", "-fPIC", "-shared", "-fno-math-errno")
-DIGEST_BYTES = 32
 ROLES = ("value", "gradient", "jacobian", "curvature", "squares")
 Builder = Callable[[Topology], KnotFunctions]
 Say = Callable[[str], None]
@@ -79,31 +79,13 @@ def load_kernels(requests: Sequence[tuple[Builder, Topology]], say: Say | None =
     say = say or (lambda line: None)
     keys = [kernel_key(builder, topology) for builder, topology in requests]
     found: dict[str, Kernel] = {}
-    folder = cache_folder()
     for key in dict.fromkeys(keys):
-        if folder is not None and (kernel := _load(folder / f"{key}.so", key)) is not None:
+        if (kernel := find_library(key, partial(_load, key))) is not None:
             found[key] = kernel
     missing = {key: request for key, request in zip(keys, requests, strict=True) if key not in found}
     if missing:
-        found.update(_build(missing, folder, say))
+        found.update(_build(missing, cache_folder(), say))
     return [found[key] for key in keys]
-
-
-def cache_folder() -> Path | None:
-    """Return the folder that keeps compiled kernels, made if need be; None where none can be had.
-
-    ``LIFTOPT_CACHE`` names it, otherwise it is the user's cache folder. A folder that others own or can write to is
-    not used, since code is loaded from it.
-    """
-    from platformdirs import user_cache_dir
-
-    named = os.environ.get("LIFTOPT_CACHE")
-    folder = Path(named) if named else Path(user_cache_dir("liftopt")) / "kernels"
-    try:
-        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    except OSError:
-        return None
-    return folder if _is_ours(folder) else None
 
 
 def find_compiler() -> list[str] | None:
@@ -114,13 +96,22 @@ def find_compiler() -> list[str] | None:
     return next(([path] for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None)
 
 
+def baseline_flags() -> tuple[str, ...]:
+    """Return the options for what every processor of this machine's kind runs, however the compiler is set up."""
+    return {"x86_64": ("-march=x86-64",), "aarch64": ("-march=armv8-a",)}.get(platform.machine(), ())
+
+
 def kernel_key(builder: Builder, topology: Topology) -> str:
     """Return a digest of all that the functions of a topology are generated from."""
+    import casadi as ca
+    import pinocchio as pin
+
     digest = hashlib.sha256()
-    for part in (builder.__name__, topology.signature(), platform.machine(), platform.system(), *FLAGS):
+    # CC may hold options too, and not all of them yield to ours.
+    options = [part for part in shlex.split(os.environ.get("CC", ""))[1:] if part.startswith("-")]
+    where = (platform.machine(), platform.system(), *FLAGS, *baseline_flags(), *options)
+    for part in (builder.__name__, topology.signature(), *where, ca.CasadiMeta.version(), pin.printVersion()):
         digest.update(part.encode() + b"\0")
-    for package in ("casadi", "pin"):
-        digest.update(version(package).encode() + b"\0")
     for source in (dynamics.__file__, __file__):
         digest.update(Path(source).read_bytes())
     return digest.hexdigest()[:32]
@@ -145,9 +136,7 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
             if process.returncode != 0 or not built.exists():
                 say(f"the C compiler failed ({(errors or 'no message').strip().splitlines()[-1:]}): using the VM")
                 continue
-            # Without a folder to keep it the library is loaded from the work folder; it stays mapped when that goes.
-            path = keep(built, folder)
-            if kernel := _load(path, key):
+            if kernel := keep(built, folder, partial(_load, key)):
                 kernels[key] = kernel
             else:
                 say("what the C compiler made cannot be loaded: using CasADi's virtual machine")
@@ -162,7 +151,8 @@ def _start_compiler(compiler: list[str], work: Path, key: str, functions: KnotFu
         source = getattr(functions, role)
         generator.add(ca.Function(_symbol(role, key), source.sx_in(), source.call(source.sx_in())))
     generator.generate(f"{work}{os.sep}")
-    command = [*compiler, *FLAGS, str(work / f"kernel_{key}.c"), "-o", str(work / f"{key}.so"), "-lm"]
+    code, built = work / f"kernel_{key}.c", work / f"{key}.so"
+    command = [*compiler, *FLAGS, *baseline_flags(), str(code), "-o", str(built), "-lm"]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
 
@@ -170,57 +160,13 @@ def _symbol(role: str, key: str) -> str:
     return f"{role}_{key[:12]}"
 
 
-def keep(built: Path, folder: Path | None) -> Path:
-    """Seal a library and move it to the cache folder, if there is one; return where it is."""
-    _seal(built)
-    return _publish(built, folder / built.name) if folder is not None else built
-
-
-def _seal(path: Path) -> None:
-    """Append the digest of the file's bytes, which a loader of shared libraries ignores, and make it private."""
-    path.chmod(0o600)
-    with path.open("ab") as file:
-        file.write(hashlib.sha256(path.read_bytes()).digest())
-
-
-def _publish(built: Path, target: Path) -> Path:
-    """Copy beside the target and rename, so that the target is whole whenever it exists; fall back to ``built``."""
-    try:
-        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".new-") as beside:
-            copy = Path(beside) / target.name
-            with copy.open("wb") as file:
-                file.write(built.read_bytes())
-                file.flush()
-                os.fsync(file.fileno())
-            copy.chmod(0o600)
-            os.replace(copy, target)
-    except OSError:
-        return built
-    return target
-
-
-def _is_ours(path: Path) -> bool:
-    if not hasattr(os, "getuid"):
-        return True
-    status = path.stat()
-    return status.st_uid == os.getuid() and not status.st_mode & 0o022
-
-
-def is_sealed(path: Path) -> bool:
-    """Whether a library is the user's own and whole; raises OSError where it cannot be read."""
-    content = path.read_bytes()
-    return _is_ours(path) and hashlib.sha256(content[:-DIGEST_BYTES]).digest() == content[-DIGEST_BYTES:]
-
-
-def _load(path: Path, key: str) -> Kernel | None:
-    """Return the kernel of a sealed library, or None where it is missing, damaged or not the user's own."""
+def _load(key: str, path: Path) -> Kernel | None:
+    """Return the kernel of a library, or None where it is none of that key."""
     import casadi as ca
 
     try:
-        if not is_sealed(path):
-            return None
         roles = [ca.external(_symbol(role, key), str(path)) for role in ROLES]
-    except (OSError, RuntimeError):
+    except RuntimeError:
         return None
     return _kernel(roles, compiled=True)
 

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
-import scipy.sparse as sp
 
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.trajectory import object_trajectory
+from liftopt.trajectory import attitude, bearing, cross, free_flyer_state, object_trajectory, turned
 
 Array = npt.NDArray[np.float64]
 # The scale from which on large multipliers relax the test, s_max of Waechter and Biegler (2006), eq. 6.
 MULTIPLIER_SCALE = 100.0
-STEP = 1e-3
+# A step along the imaginary axis gives a derivative without a difference, so it can be as small as this.
+STEP = 1e-30
 
 
 @dataclass(frozen=True)
@@ -45,24 +45,21 @@ class KktError:
 
 def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
     """Return the KKT error of a point of a problem, all functions evaluated by Pinocchio."""
-    outputs, slopes = [], []
-    gradient, objective = np.zeros(len(x)), 0.0
-    weights, period = problem.mesh.weights, problem.task.duration
+    constraints, weights, period = problem.constraints, problem.mesh.weights, problem.task.duration
+    gradient, objective = multipliers.x + constraints.linear.T @ multipliers.g, 0.0
+    pulls, outputs = constraints.combine.T @ multipliers.g, []
     for i, part in enumerate(problem.parts):
         y = (part.select @ x).reshape(len(weights), part.kernel.n_y)
-        c, jacobians = _evaluate(problem, i, y, period)
+        c, jacobian = _evaluate(problem, i, y, period)
         leading, y_weight = problem.weights(i)
         c_weight = np.concatenate([leading, np.zeros(part.kernel.n_c - len(leading))])
         objective += float(weights @ (c**2 @ c_weight + y**2 @ y_weight))
-        pull = 2 * weights[:, None] * c * c_weight
-        block = sp.block_diag(jacobians, format="csr")
-        gradient += part.select.T @ (block.T @ pull.ravel() + (2 * weights[:, None] * y * y_weight).ravel())
+        pull, pulls = pulls[: c.size].reshape(c.shape), pulls[c.size :]
+        by_c = pull + 2 * weights[:, None] * c * c_weight
+        by_y = turned(jacobian.swapaxes(1, 2), by_c) + 2 * weights[:, None] * y * y_weight
+        gradient += part.select.T @ by_y.ravel()
         outputs.append(c.ravel())
-        slopes.append(block @ part.select)
-    constraints = problem.constraints
     g = constraints.combine @ np.concatenate(outputs) + constraints.linear @ x
-    jacobian = constraints.combine @ sp.vstack(slopes) + constraints.linear
-    gradient += jacobian.T @ multipliers.g + multipliers.x
 
     lower, upper = problem.bounds()
     free = upper > lower
@@ -86,72 +83,78 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
     )
 
 
-def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Array, list[Array]]:
-    """Return outputs (K, n_c) and their Jacobians (n_c, n_y) at every knot."""
+def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Array, Array]:
+    """Return outputs (K, n_c) and their Jacobians (K, n_c, n_y) at every knot."""
     team = problem.team
     if part < len(team.agents):
-        model = team.agents[part].reduced()
-        pairs = [_agent_knot(team.agents[part], model, model.createData(), row, period) for row in y]
-    else:
-        pairs = [_object_knot(team.held, team.held.model.createData(), row, period) for row in y]
-    return np.array([c for c, _ in pairs]), [jacobian for _, jacobian in pairs]
+        return _agent_knots(team.agents[part], y, period)
+    return _object_outputs(team.held, y, period), _object_slopes(team.held, y, period)
 
 
-def _agent_knot(agent: Agent, model: pin.Model, data: pin.Data, y: Array, period: float) -> tuple[Array, Array]:
-    n = model.nv
-    q, v, a, f = y[:n], y[n : 2 * n] / period, y[2 * n : 3 * n] / period**2, y[3 * n :]
-    frame = model.frames[model.getFrameId(agent.grasp_frame)]
-    pin.computeJointJacobians(model, data, q)
-    slope_joint = pin.getJointJacobian(model, data, frame.parentJoint, pin.LOCAL)
-    placement = data.oMi[frame.parentJoint] * frame.placement
-    # The reaction -f seen from the joint that carries the grasp; it turns when the joint does.
-    linear, lever = -data.oMi[frame.parentJoint].rotation.T @ f, frame.placement.translation
-    turn = np.cross(linear, slope_joint[3:].T).T
-    reaction_slope = np.vstack([turn, np.cross(lever, turn.T).T])
-    loads = pin.StdVec_Force()
-    loads.extend([pin.Force.Zero() for _ in range(model.njoints)])
-    loads[frame.parentJoint] = pin.Force(linear, np.cross(lever, linear))
-
-    dtau_dq, dtau_dv, mass_matrix = (np.array(m) for m in pin.computeRNEADerivatives(model, data, q, v, a, loads))
-    mass_matrix = np.triu(mass_matrix) + np.triu(mass_matrix, 1).T
-    tau = pin.rnea(model, data, q, v, a, loads)
-    slope = pin.computeFrameJacobian(model, data, q, model.getFrameId(agent.grasp_frame), pin.LOCAL_WORLD_ALIGNED)[:3]
-    c = np.concatenate([tau, placement.translation, [f @ f]])
-    jacobian = np.zeros((n + FORCE_SIZE + 1, len(y)))
-    jacobian[:n, :n] = dtau_dq - slope_joint.T @ reaction_slope
-    jacobian[:n, n : 2 * n], jacobian[:n, 2 * n : 3 * n] = dtau_dv / period, mass_matrix / period**2
-    jacobian[:n, 3 * n :] = slope.T
-    jacobian[n : n + FORCE_SIZE, :n] = slope
-    jacobian[n + FORCE_SIZE, 3 * n :] = 2 * f
-    return c, jacobian
+def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
+    model = agent.reduced()
+    n, data, frame = model.nv, model.createData(), model.frames[model.getFrameId(agent.grasp_frame)]
+    q, v, a, f = y[:, :n], y[:, n : 2 * n] / period, y[:, 2 * n : 3 * n] / period**2, y[:, 3 * n :]
+    tau, point, slopes = np.zeros((len(y), n)), np.zeros((len(y), 3)), np.zeros((len(y), 6, n))
+    jacobian, mass_matrix = np.zeros((len(y), n + FORCE_SIZE + 1, y.shape[1])), np.zeros((len(y), n, n))
+    for k in range(len(y)):
+        tau[k] = pin.rnea(model, data, q[k], v[k], a[k])
+        slopes[k] = pin.computeJointJacobians(model, data, q[k])
+        point[k] = data.oMi[frame.parentJoint].act(frame.placement.translation)
+        by_state = pin.computeRNEADerivatives(model, data, q[k], v[k], a[k])
+        jacobian[k, :n, :n], jacobian[k, :n, n : 2 * n], mass_matrix[k] = by_state
+    jacobian[:, :n, n : 2 * n] /= period
+    jacobian[:, :n, 2 * n : 3 * n] = _mirrored(mass_matrix) / period**2
+    slopes *= bearing(model, frame.parentJoint)
+    turning = slopes[:, 3:].swapaxes(1, 2)
+    slope = slopes[:, :3].swapaxes(1, 2) + cross(turning, point[:, None])
+    # A joint turns the grasp's Jacobian columns of the joints after it: d2p / dq_i dq_j = w_i x dp/dq_j for i <= j,
+    # and the order of differentiation does not matter.
+    jacobian[:, :n, :n] += _mirrored(turned(cross(turning[:, :, None], slope[:, None, :]), f[:, None]))
+    jacobian[:, :n, 3 * n :] = slope
+    jacobian[:, n : n + FORCE_SIZE, :n] = slope.swapaxes(1, 2)
+    jacobian[:, n + FORCE_SIZE, 3 * n :] = 2 * f
+    return np.hstack([tau + turned(slope, f), point, (f**2).sum(axis=1)[:, None]]), jacobian
 
 
-def _object_knot(held: LiftedObject, data: pin.Data, y: Array, period: float) -> tuple[Array, Array]:
-    c = _object_outputs(held, data, y, period)
-    jacobian = np.zeros((len(c), len(y)))
-    mass, grasps = held.model.inertias[1].mass, len(held.grasp_frames)
-    jacobian[:3, 12:15] = mass / period**2 * np.eye(3)
-    jacobian[OBJECT_SIZE:, :3] = np.tile(np.eye(3), (grasps, 1))
-    rotation = data.oMi[1].rotation
-    for i, name in enumerate(held.grasp_frames):
-        column = slice(18 + 3 * i, 21 + 3 * i)
-        lever = held.model.frames[held.model.getFrameId(name)].placement.translation
-        jacobian[:3, column], jacobian[3:OBJECT_SIZE, column] = -np.eye(3), -pin.skew(lever) @ rotation.T
-    # By the angles and their rates: central differences of fourth order, exact to rounding at this step. The balance
-    # is linear in the second derivatives, for which any step is exact.
-    for j in (3, 4, 5, 9, 10, 11, 15, 16, 17):
-        stencil = ((1, 2 / 3), (2, -1 / 12)) if j < 15 else ((1, 1 / 2),)
-        for k, weight in stencil:
-            ahead, behind = y.copy(), y.copy()
-            ahead[j] += k * STEP
-            behind[j] -= k * STEP
-            difference = _object_outputs(held, data, ahead, period) - _object_outputs(held, data, behind, period)
-            jacobian[:, j] += weight * difference / STEP
-    return c, jacobian
+def _object_outputs(held: LiftedObject, y: Array, period: float) -> Array:
+    moved = object_trajectory(held, y[:, :6], y[:, 6:12] / period, y[:, 12:18] / period**2, y[:, 18:])
+    return np.hstack([moved.wrench, moved.grasp_position.reshape(len(y), -1)])
 
 
-def _object_outputs(held: LiftedObject, data: pin.Data, y: Array, period: float) -> Array:
-    moved = object_trajectory(
-        held, y[None, :6], y[None, 6:12] / period, y[None, 12:18] / period**2, y[None, 18:], data
-    )  # fmt: skip
-    return np.concatenate([moved.wrench[0], moved.grasp_position[0].ravel()])
+def _object_slopes(held: LiftedObject, y: Array, period: float) -> Array:
+    """Return the Jacobians (K, n_c, n_y): Pinocchio's by the free-flyer's motion, times that motion's by y."""
+    model, data = held.model, held.model.createData()
+    rotation, spin = attitude(y[:, 3:6])
+    back = rotation.swapaxes(1, 2)
+    # The motion (q in its tangent space, v, a) by x, x', x''.
+    motion = np.zeros((len(y), 18, 18))
+    motion[:, 0:3, 0:3], motion[:, 3:6, 3:6] = back, spin
+    nudged = y[:, None, :18] + 1j * STEP * np.eye(18)
+    _, v, a = free_flyer_state(nudged[..., :6], nudged[..., 6:12] / period, nudged[..., 12:] / period**2)
+    motion[:, 6:12], motion[:, 12:] = v.imag.swapaxes(1, 2) / STEP, a.imag.swapaxes(1, 2) / STEP
+    turning = attitude(nudged[:, 3:6, 3:6])[0].imag / STEP  # dR by roll, pitch, yaw
+
+    q, v, a = free_flyer_state(y[:, :6], y[:, 6:12] / period, y[:, 12:18] / period**2)
+    generalized, by_motion = np.zeros((len(y), OBJECT_SIZE)), np.zeros((len(y), OBJECT_SIZE, 18))
+    for k in range(len(y)):
+        generalized[k] = pin.rnea(model, data, q[k], v[k], a[k])
+        by_motion[k] = np.hstack(pin.computeRNEADerivatives(model, data, q[k], v[k], a[k]))
+    by_motion[:, :, 12:] = _mirrored(by_motion[:, :, 12:])
+    levers = [model.frames[model.getFrameId(name)].placement.translation for name in held.grasp_frames]
+    jacobian = np.zeros((len(y), OBJECT_SIZE + 3 * len(levers), y.shape[1]))
+    jacobian[:, :OBJECT_SIZE, :18] = by_motion @ motion
+    jacobian[:, :3] = rotation @ jacobian[:, :3]
+    jacobian[:, :3, 3:6] += np.einsum("kaij,kj->kia", turning, generalized[:, :3])
+    for i, lever in enumerate(levers):
+        rows, columns = slice(OBJECT_SIZE + 3 * i, OBJECT_SIZE + 3 * i + 3), slice(18 + 3 * i, 21 + 3 * i)
+        jacobian[:, :3, columns] = -np.eye(3)
+        jacobian[:, 3:OBJECT_SIZE, columns] = -pin.skew(lever) @ back
+        jacobian[:, 3:OBJECT_SIZE, 3:6] -= pin.skew(lever) @ np.einsum("kaji,kj->kia", turning, y[:, columns])
+        jacobian[:, rows, :3], jacobian[:, rows, 3:6] = np.eye(3), np.einsum("kaij,j->kia", turning, lever)
+    return jacobian
+
+
+def _mirrored(matrices: Array) -> Array:
+    """Return symmetric matrices (K, n, n) from their upper triangles, all that Pinocchio fills of a mass matrix."""
+    return np.triu(matrices) + np.triu(matrices, 1).swapaxes(1, 2)

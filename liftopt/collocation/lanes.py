@@ -2,14 +2,14 @@
 
 Every knot runs the same instructions on other numbers, so one call serves as many knots as the processor's vectors
 have lanes. Arguments and results are interleaved: entry j of lane l is at ``j * lanes + l``. The vector types are GCC's
-and Clang's, and the code is for the processor it is compiled on; another compiler refuses it, and then there is none.
+and Clang's; another compiler refuses them, and then there are none. The code uses the instructions that are named to
+the compiler and no other, and only a processor that has them all finds it.
 """
 
 from __future__ import annotations
 
 import ctypes
 import hashlib
-import platform
 import re
 import subprocess
 import tempfile
@@ -19,11 +19,14 @@ from pathlib import Path
 from typing import Any
 
 from liftopt.collocation.dynamics import KnotFunctions, Topology
-from liftopt.collocation.kernels import Builder, Say, cache_folder, find_compiler, is_sealed, keep, kernel_key
+from liftopt.collocation.kernels import Builder, Say, baseline_flags, find_compiler, kernel_key
+from liftopt.collocation.libraries import cache_folder, find_library, keep
 
 SYMBOLS = ("wide_value", "wide_derivatives", "wide_lanes")
 # Scheduling takes most of the compiler's time and spills what it moves; -O1 evaluates half as fast.
-FLAGS = ("-O2", "-fno-schedule-insns", "-fno-schedule-insns2", "-march=native", "-fPIC", "-shared", "-fno-math-errno")
+FLAGS = ("-O2", "-fno-schedule-insns", "-fno-schedule-insns2", "-fPIC", "-shared", "-fno-math-errno")
+# Extensions of x86-64 that the code gains from, as both the kernel and the compiler call them.
+EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl")
 # What generated code may call beside arithmetic; a function that is missing here would not compile.
 PRELUDE = """\
 #include <math.h>
@@ -76,31 +79,31 @@ def load_wide(requests: Sequence[tuple[Builder, Topology]], say: Say | None = No
     """
     say = say or (lambda line: None)
     keys = [_key(builder, topology) for builder, topology in requests]
-    folder = cache_folder()
     found: dict[str, WideKernel] = {}
     for key in dict.fromkeys(keys):
-        if folder is not None and (kernel := _load(folder / f"{key}.so")) is not None:
+        if (kernel := find_library(key, _load)) is not None:
             found[key] = kernel
     missing = {key: request for key, request in zip(keys, requests, strict=True) if key not in found}
     if missing:
-        found.update(_compile(missing, folder, say))
+        found.update(_compile(missing, cache_folder(), say))
     return [found[key] for key in keys] if all(key in found for key in keys) else None
 
 
 def _key(builder: Builder, topology: Topology) -> str:
     digest = hashlib.sha256(kernel_key(builder, topology).encode())
-    digest.update(repr((FLAGS, _processor())).encode())
+    digest.update(repr((FLAGS, _extensions())).encode())
     digest.update(Path(__file__).read_bytes())
     return digest.hexdigest()[:32]
 
 
-def _processor() -> str:
-    """Return what tells processors apart that run different instructions, since a home may be shared by several."""
+def _extensions() -> tuple[str, ...]:
+    """Return the compiler's options for those of ``EXTENSIONS`` that this processor and system have."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
-        return platform.processor()
-    return next((line for line in lines if line.lower().startswith(("flags", "features"))), platform.processor())
+        return ()
+    has = next((line for line in lines if line.startswith("flags")), "").split()
+    return tuple(f"-m{name}" for name in EXTENSIONS if name in has)
 
 
 def _compile(missing: Mapping[str, tuple[Builder, Topology]], folder: Path | None, say: Say) -> dict[str, WideKernel]:
@@ -114,11 +117,11 @@ def _compile(missing: Mapping[str, tuple[Builder, Topology]], folder: Path | Non
         for key, (builder, topology) in missing.items():
             source, built = Path(work) / f"{key}.c", Path(work) / f"{key}.so"
             source.write_text(lanes_source(builder(topology)))
-            command = [*compiler, *FLAGS, str(source), "-o", str(built), "-lm"]
+            command = [*compiler, *FLAGS, *baseline_flags(), *_extensions(), str(source), "-o", str(built), "-lm"]
             silent = subprocess.DEVNULL
             jobs[key] = built, subprocess.Popen(command, stdout=silent, stderr=silent)
         for key, (built, process) in jobs.items():
-            if process.wait() == 0 and built.exists() and (kernel := _load(keep(built, folder))):
+            if process.wait() == 0 and built.exists() and (kernel := keep(built, folder, _load)):
                 found[key] = kernel
             else:
                 say("the C compiler cannot make code for several knots at once")
@@ -127,8 +130,6 @@ def _compile(missing: Mapping[str, tuple[Builder, Topology]], folder: Path | Non
 
 def _load(path: Path) -> WideKernel | None:
     try:
-        if not is_sealed(path):
-            return None
         library = ctypes.CDLL(str(path))
         lanes = ctypes.c_int.in_dll(library, "wide_lanes").value
         value, derivatives = (ctypes.cast(library[name], ctypes.c_void_p).value or 0 for name in SYMBOLS[:2])

@@ -73,15 +73,14 @@ class Layout:
         """Return S (K n_y, n_x): at each knot q, q', q'' and the forces of a part, as linear maps of x."""
         control, force = self.control[:, self.columns(part)], self.force[:, self.force_columns(part)]
         n, m = control.shape[1], force.shape[1]
-        n_y = 3 * n + m
-        rows, cols, values = [], [], []
-        for k in range(len(self.mesh.phase)):
-            for order, basis in enumerate(self.mesh.basis):
-                for i in np.flatnonzero(basis[k]):
-                    rows += list(k * n_y + order * n + np.arange(n))
-                    cols += list(control[i])
-                    values += [basis[k, i]] * n
-            rows += list(k * n_y + 3 * n + np.arange(m))
-            cols += list(force[k])
-            values += [1.0] * m
-        return sp.csc_matrix((values, (rows, cols)), shape=(len(self.mesh.phase) * n_y, self.n_x))
+        n_y, rows, cols, values = 3 * n + m, [], [], []
+        for order, basis in enumerate(self.mesh.basis):
+            knot, i = np.nonzero(basis)
+            rows.append(n_y * knot[:, None] + order * n + np.arange(n))
+            cols.append(control[i])
+            values.append(np.repeat(basis[knot, i], n))
+        rows.append(n_y * np.arange(len(force))[:, None] + 3 * n + np.arange(m))
+        cols.append(force)
+        values.append(np.ones(force.size))
+        row, col = (np.concatenate([part.ravel() for part in parts]) for parts in (rows, cols))
+        return sp.csc_matrix((np.concatenate(values), (row, col)), shape=(len(force) * n_y, self.n_x))

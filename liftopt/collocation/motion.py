@@ -28,6 +28,10 @@ class Motion:
     agents: tuple[AgentTrajectory, ...]
     held: ObjectTrajectory
 
+    def every(self, step: int) -> Motion:
+        """Return the motion at the first and every ``step``-th time after it."""
+        return Motion(self.time[::step], tuple(agent.every(step) for agent in self.agents), self.held.every(step))
+
 
 def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array) -> Motion:
     """Return the motion that the unknowns ``x`` stand for at ``phase`` (K,) in [0, 1]."""

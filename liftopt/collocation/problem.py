@@ -42,14 +42,35 @@ class Team:
     kernels: tuple[Kernel, ...]
 
     @staticmethod
-    def of(agents: tuple[Agent, ...], held: LiftedObject, say: Callable[[str], None] | None = None) -> Team:
-        """Load or compile the kernels; ``say`` hears of it when that takes long."""
+    def of(
+        agents: tuple[Agent, ...],
+        held: LiftedObject,
+        say: Callable[[str], None] | None = None,
+        like: Team | None = None,
+    ) -> Team:
+        """Load or compile the kernels.
+
+        Args:
+            agents: in the order of the object's grasp frames.
+            held: the object.
+            say: hears of it when that takes long.
+            like: a team whose kernels are taken if they are the ones.
+        """
         _check(agents, held)
         topologies = [Topology.of(agent.reduced(), (agent.grasp_frame,)) for agent in agents]
         topologies.append(Topology.of(held.model, held.grasp_frames))
-        builders = [agent_functions] * len(agents) + [object_functions]
-        kernels = load_kernels(list(zip(builders, topologies, strict=True)), say)
-        return Team(agents, held, tuple(topologies), tuple(kernels))
+        signatures = tuple(topology.signature() for topology in topologies)
+        if like is not None and like.signatures == signatures:
+            kernels = like.kernels
+        else:
+            builders = [agent_functions] * len(agents) + [object_functions]
+            kernels = tuple(load_kernels(list(zip(builders, topologies, strict=True)), say))
+        return Team(agents, held, tuple(topologies), kernels)
+
+    @cached_property
+    def signatures(self) -> tuple[str, ...]:
+        """Digests of what each kernel is generated from."""
+        return tuple(topology.signature() for topology in self.topologies)
 
     @property
     def coordinates(self) -> tuple[int, ...]:
@@ -102,6 +123,16 @@ class Problem:
             kernel = np.concatenate([[self.task.duration], self.team.topologies[i].parameters])
             packed.append(PartParameters(kernel, *self.weights(i)))
         return pack(packed)
+
+    def same_structure(self, other: Problem) -> bool:
+        """Whether unknowns and rows of both mean the same, so that an optimum of one is a start for the other."""
+        rows = ([(block.name, block.who, block.rows) for block in p.constraints.blocks] for p in (self, other))
+        kernels = zip(self.team.kernels, other.team.kernels, strict=True)
+        return self.mesh is other.mesh and all(a is b for a, b in kernels) and next(rows) == next(rows)
+
+    def interchangeable(self, other: Problem) -> bool:
+        """Whether a solver made for one takes the other: only bounds and parameters may differ."""
+        return self.same_structure(other) and self.constraints.same_rows(other.constraints)
 
     def weights(self, part: int) -> tuple[Array, Array]:
         """Return the weights of a part's squared leading outputs and squared knot variables in the objective.

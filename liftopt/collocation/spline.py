@@ -12,7 +12,6 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import BSpline
 
 Array = npt.NDArray[np.float64]
 DEGREE = 3
@@ -101,9 +100,7 @@ class RestToRestSpline:
 
     def basis(self, phase: Array, derivative: int = 0) -> Array:
         """Return the (len(phase), N - 1) values of the free basis functions, or of a derivative by the phase."""
-        spline = BSpline(self._knot_vector, np.eye(self.intervals + 3), DEGREE)
-        values = np.asarray(spline.derivative(derivative)(phase) if derivative else spline(phase), dtype=float)
-        values = values @ self._tied
+        values = _basis(self._knot_vector, DEGREE, derivative, np.asarray(phase, dtype=float)) @ self._tied
         # Exact zeros outside the support keep the sparsity of what is built on it.
         values[np.abs(values) < 1e-13 * max(1.0, float(np.abs(values).max()))] = 0.0
         return values
@@ -138,6 +135,28 @@ class RestToRestSpline:
         tied = np.zeros((n, free))
         tied[np.arange(n), np.clip(np.arange(n) - 2, 0, free - 1)] = 1.0
         return tied
+
+
+def _basis(knots: Array, degree: int, derivative: int, phase: Array) -> Array:
+    """Return the B-spline basis of a knot vector, or a derivative, at ``phase`` (n,): (n, len(knots) - degree - 1).
+
+    The recursions of Cox and de Boor, for the value and for the derivative (de Boor, A Practical Guide to Splines,
+    chapter X). SciPy's BSpline has the same, but its import takes longer than a solve.
+    """
+    if degree == 0:
+        last = np.flatnonzero(np.diff(knots))[-1]
+        inside = np.clip(np.searchsorted(knots, phase, side="right") - 1, 0, last)
+        return np.asarray(inside[:, None] == np.arange(len(knots) - 1), dtype=float)
+    lower = _basis(knots, degree - 1, max(0, derivative - 1), phase)
+    width = knots[degree:] - knots[:-degree]
+    # A basis function on an empty interval is zero, and so is what it contributes.
+    inverse = np.divide(1.0, width, out=np.zeros_like(width), where=width > 0.0)
+    if derivative:
+        left, right = degree * inverse, -degree * inverse
+    else:
+        left, right = (phase[:, None] - knots[:-degree]) * inverse, (knots[degree:] - phase[:, None]) * inverse
+    rising, falling = lower * left, lower * right
+    return np.asarray(rising[:, :-1] + falling[:, 1:])
 
 
 def interpolate_linear(values: Array, phase: Array) -> Array:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from liftopt.multibody.dh import Array
-
-if TYPE_CHECKING:
-    import yourdfpy
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ class Shape(Protocol):
     def seen_from(self, transform: Array) -> Shape:
         """Return the same shape in frame A, given T_A_B (4, 4) of its present frame B."""
 
-    def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
+    def parts(self) -> list[tuple[str, Array, Element]]:
         """Return name, placement (4, 4) in the shape's frame and geometry of each URDF primitive it consists of."""
 
 
@@ -53,17 +51,15 @@ class Capsule:
         """Return the same capsule in frame A, given T_A_B (4, 4) of its present frame B."""
         return replace(self, start=_moved(transform, self.start), end=_moved(transform, self.end))
 
-    def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
+    def parts(self) -> list[tuple[str, Array, Element]]:
         """Return the cylinder and its two end spheres."""
-        import yourdfpy
-
         axis = self.end - self.start
         length = float(np.linalg.norm(axis))
         middle = _turned_to(axis / length, (self.start + self.end) / 2.0)
         return [
-            (self.name, middle, yourdfpy.Geometry(cylinder=yourdfpy.Cylinder(_um(self.radius), _um(length)))),
-            (f"{self.name}_start", _at(self.start), yourdfpy.Geometry(sphere=yourdfpy.Sphere(_um(self.radius)))),
-            (f"{self.name}_end", _at(self.end), yourdfpy.Geometry(sphere=yourdfpy.Sphere(_um(self.radius)))),
+            (self.name, middle, _cylinder(self.radius, length)),
+            (f"{self.name}_start", _at(self.start), _sphere(self.radius)),
+            (f"{self.name}_end", _at(self.end), _sphere(self.radius)),
         ]
 
 
@@ -80,11 +76,9 @@ class Box:
         """Return the same box in frame A, given T_A_B (4, 4) of its present frame B."""
         return replace(self, placement=transform @ self.placement)
 
-    def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
+    def parts(self) -> list[tuple[str, Array, Element]]:
         """Return the box."""
-        import yourdfpy
-
-        return [(self.name, self.placement, yourdfpy.Geometry(box=yourdfpy.Box(np.round(self.size, 6))))]
+        return [(self.name, self.placement, Element("box", size=urdf_numbers(*np.round(self.size, 6))))]
 
 
 @dataclass(frozen=True)
@@ -101,19 +95,30 @@ class Cylinder:
         """Return the same cylinder in frame A, given T_A_B (4, 4) of its present frame B."""
         return replace(self, start=_moved(transform, self.start), end=_moved(transform, self.end))
 
-    def parts(self) -> list[tuple[str, Array, yourdfpy.Geometry]]:
+    def parts(self) -> list[tuple[str, Array, Element]]:
         """Return the cylinder."""
-        import yourdfpy
-
         axis = self.end - self.start
         length = float(np.linalg.norm(axis))
         middle = _turned_to(axis / length, (self.start + self.end) / 2.0)
-        return [(self.name, middle, yourdfpy.Geometry(cylinder=yourdfpy.Cylinder(_um(self.radius), _um(length))))]
+        return [(self.name, middle, _cylinder(self.radius, length))]
 
 
 def box_at(name: str, colour: Colour, centre: Array, size: tuple[float, float, float]) -> Box:
     """Return a box along the axes of its frame, centred at ``centre`` (3,) [m]."""
     return Box(name, colour, _at(centre), size)
+
+
+def urdf_numbers(*values: float) -> str:
+    """Return numbers as a URDF has them, all their digits; no zero has a sign."""
+    return " ".join(str(float(value) + 0.0) for value in values)
+
+
+def _cylinder(radius: float, length: float) -> Element:
+    return Element("cylinder", radius=urdf_numbers(_um(radius)), length=urdf_numbers(_um(length)))
+
+
+def _sphere(radius: float) -> Element:
+    return Element("sphere", radius=urdf_numbers(_um(radius)))
 
 
 def _um(length: float) -> float:

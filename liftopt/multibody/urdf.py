@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from io import BytesIO
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 import pinocchio as pin
 
 from liftopt.multibody.dh import Array, BodyInertia, DHChain, frame_transforms, row_origin, row_tail
-from liftopt.multibody.shapes import Shape
-
-# Writing URDFs takes yourdfpy, whose import takes longer than reading a result: it is imported where it is used.
-if TYPE_CHECKING:
-    import yourdfpy
+from liftopt.multibody.shapes import Shape, urdf_numbers
 
 # Frames and bodies are written with all their digits; where a shape is drawn, to the micrometre.
 SHAPE_DECIMALS = 6
-_MINUS_ZERO = re.compile(r'(?<=[ "])-0\.0(?=[ "])')
+LIMITS = ("effort", "velocity", "lower", "upper")
+DECLARATION = "<?xml version='1.0' encoding='ASCII'?>\n"
 
 
 @dataclass(frozen=True)
@@ -93,8 +89,8 @@ def chain_robot(
     shapes: Mapping[str, Sequence[Shape]],
     grasp: str,
     attached: Sequence[FixedLink] = (),
-) -> yourdfpy.Robot:
-    """Return the URDF description of a DH chain that stands on the link ``world``.
+) -> Element:
+    """Return the URDF of a DH chain that stands on the link ``world``.
 
     Args:
         chain: DH rows and their bodies.
@@ -104,59 +100,31 @@ def chain_robot(
         grasp: name of the massless link at the end of the chain, at the last DH frame.
         attached: further fixed links.
     """
-    import yourdfpy
-
-    links, joints = [yourdfpy.Link("world")], []
+    links, joints = [Element("link", name="world")], []
     parent, tail = root.name, np.eye(4)
     for row, body in zip(chain.rows, chain.inertias, strict=True):
-        joint, link = joint_name(chain.name, row.name), link_name(chain.name, row.name)
-        limit, origin = bounds[row.name], tail @ row_origin(row)
-        joints.append(
-            yourdfpy.Joint(
-                joint,
-                type=row.kind,
-                parent=parent,
-                child=link,
-                origin=origin,
-                axis=np.array([0.0, 0.0, 1.0]),
-                limit=yourdfpy.Limit(limit.effort, limit.velocity, limit.lower, limit.upper),
-            )
-        )
+        link = link_name(chain.name, row.name)
+        joint = _joint(joint_name(chain.name, row.name), row.kind, parent, link, tail @ row_origin(row))
+        SubElement(joint, "axis", xyz="0.0 0.0 1.0")
+        limit = asdict(bounds[row.name])
+        SubElement(joint, "limit", {key: urdf_numbers(limit[key]) for key in LIMITS})
+        joints.append(joint)
         # The chain states its bodies in DH frames, after the row's tail; a URDF link's frame is before it.
         tail = row_tail(row)
         links.append(_link(link, body.transformed(tail[:3, :3], tail[:3, 3]), shapes.get(row.name, ())))
         parent = link
-    robot = yourdfpy.Robot(f"liftopt_{chain.name}", links=links, joints=joints)
-    fixed = (root, *attached, FixedLink(grasp, parent, tail))
-    return with_fixed_links(robot, fixed)
+    return _robot(chain.name, links, (root, *attached, FixedLink(grasp, parent, tail)), joints)
 
 
-def body_robot(name: str, body: BodyInertia, shapes: Sequence[Shape], fixed: Sequence[FixedLink]) -> yourdfpy.Robot:
-    """Return the URDF description of one free body whose frame is the link ``name``."""
-    import yourdfpy
-
-    return with_fixed_links(yourdfpy.Robot(f"liftopt_{name}", links=[_link(name, body, shapes)]), fixed)
+def body_robot(name: str, body: BodyInertia, shapes: Sequence[Shape], fixed: Sequence[FixedLink]) -> Element:
+    """Return the URDF of one free body whose frame is the link ``name``."""
+    return _robot(name, [_link(name, body, shapes)], fixed, [])
 
 
-def with_fixed_links(robot: yourdfpy.Robot, fixed: Sequence[FixedLink]) -> yourdfpy.Robot:
-    """Return ``robot`` with more links that do not move."""
-    import yourdfpy
-
-    links = [_link(item.name, item.body, item.shapes) for item in fixed]
-    joints = [
-        yourdfpy.Joint(f"{item.name}_fixed", type="fixed", parent=item.parent, child=item.name, origin=item.placement)
-        for item in fixed
-    ]
-    return yourdfpy.Robot(robot.name, links=[*robot.links, *links], joints=[*joints, *robot.joints])
-
-
-def urdf_text(robot: yourdfpy.Robot) -> str:
+def urdf_text(robot: Element) -> str:
     """Return the URDF; numbers are written with all their digits, so the same robot gives the same bytes."""
-    import yourdfpy
-
-    buffer = BytesIO()
-    yourdfpy.URDF(robot, build_scene_graph=False, load_meshes=False).write_xml_file(buffer)
-    return _MINUS_ZERO.sub("0.0", buffer.getvalue().decode("ascii"))
+    ElementTree.indent(robot)
+    return DECLARATION + ElementTree.tostring(robot, encoding="unicode").replace(" />", "/>") + "\n"
 
 
 def load_model(text: str) -> pin.Model:
@@ -169,18 +137,47 @@ def load_free_model(text: str) -> pin.Model:
     return pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
 
 
-def _link(name: str, body: BodyInertia, shapes: Sequence[Shape]) -> yourdfpy.Link:
-    import yourdfpy
+def _robot(name: str, links: Iterable[Element], fixed: Sequence[FixedLink], joints: Iterable[Element]) -> Element:
+    robot = Element("robot", name=f"liftopt_{name}")
+    robot.extend([*links, *(_link(item.name, item.body, item.shapes) for item in fixed)])
+    robot.extend([_joint(f"{item.name}_fixed", "fixed", item.parent, item.name, item.placement) for item in fixed])
+    robot.extend(joints)
+    return robot
 
-    link = yourdfpy.Link(name)
+
+def _joint(name: str, kind: str, parent: str, child: str, placement: Array) -> Element:
+    joint = Element("joint", name=name, type=kind)
+    SubElement(joint, "parent", link=parent)
+    SubElement(joint, "child", link=child)
+    joint.append(_origin(placement))
+    return joint
+
+
+def _link(name: str, body: BodyInertia, shapes: Sequence[Shape]) -> Element:
+    link = Element("link", name=name)
     if body.mass > 0.0:
-        origin = np.eye(4)
-        origin[:3, 3] = body.com
-        link.inertial = yourdfpy.Inertial(origin, body.mass, body.inertia)
-    for shape in shapes:
-        material = yourdfpy.Material(shape.colour.name, yourdfpy.Color(np.array(shape.colour.rgba)))
-        for part, placement, geometry in shape.parts():
-            placement = np.round(placement, SHAPE_DECIMALS)
-            link.visuals.append(yourdfpy.Visual(part, placement, geometry, material))
-            link.collisions.append(yourdfpy.Collision(f"{part}_collision", placement, geometry))
+        inertial = SubElement(link, "inertial")
+        SubElement(inertial, "origin", xyz=urdf_numbers(*body.com), rpy=urdf_numbers(0.0, 0.0, 0.0))
+        SubElement(inertial, "mass", value=urdf_numbers(body.mass))
+        moments = {f"i{'xyz'[r]}{'xyz'[c]}": urdf_numbers(body.inertia[r, c]) for r in range(3) for c in range(r, 3)}
+        SubElement(inertial, "inertia", moments)
+    parts = [(shape.colour, *part) for shape in shapes for part in shape.parts()]
+    for colour, part, placement, geometry in parts:
+        visual = _drawn("visual", part, placement, geometry)
+        material = SubElement(visual, "material", name=colour.name)
+        SubElement(material, "color", rgba=urdf_numbers(*colour.rgba))
+        link.append(visual)
+    link.extend([_drawn("collision", f"{part}_collision", placement, shape) for _, part, placement, shape in parts])
     return link
+
+
+def _drawn(kind: str, name: str, placement: Array, geometry: Element) -> Element:
+    drawn = Element(kind, name=name)
+    SubElement(drawn, "geometry").append(geometry)
+    drawn.append(_origin(np.round(placement, SHAPE_DECIMALS)))
+    return drawn
+
+
+def _origin(placement: Array) -> Element:
+    angles = pin.rpy.matrixToRpy(placement[:3, :3])
+    return Element("origin", xyz=urdf_numbers(*placement[:3, 3]), rpy=urdf_numbers(*angles))

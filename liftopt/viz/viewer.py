@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import signal
 import threading
-import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.viz.viewer_server import FIRST_PORT, PageServer
+from liftopt.viz.viewer_server import FIRST_PORT, PageServer, opened
 
 
 def view(
@@ -52,7 +51,7 @@ def view(
         return
     with PageServer(page, port) as server, suppress(KeyboardInterrupt):
         say(f"Playing at {server.url} (Ctrl-C ends it)")
-        if browser and not _opened(server.url):
+        if browser and not opened(server.url):
             say("No browser could be opened here: open this address in one.")
         server.serve_forever(poll_interval=0.2)
 
@@ -92,12 +91,3 @@ def _write(file: Path, page: str) -> None:
         file.write_text(page, encoding="utf-8")
     except OSError as error:
         raise InputError("--html", str(file), f"cannot be written: {error.strerror or error}") from None
-
-
-def _opened(url: str) -> bool:
-    """Return whether a browser with windows was started; one in the terminal would show nothing, and would block."""
-    try:
-        browser = webbrowser.get()
-    except webbrowser.Error:
-        return False
-    return type(browser) is not webbrowser.GenericBrowser and browser.open(url)

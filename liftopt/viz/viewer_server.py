@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 import socket
+import webbrowser
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
@@ -21,6 +22,7 @@ class PageServer(ThreadingHTTPServer):
     Args:
         page: HTML text.
         port: the first one to try.
+        handler: answers the requests.
 
     Raises:
         OSError: no port from there on, nor any other, can be had.
@@ -29,9 +31,9 @@ class PageServer(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False
 
-    def __init__(self, page: str, port: int = FIRST_PORT) -> None:
+    def __init__(self, page: str, port: int = FIRST_PORT, handler: type[PageHandler] | None = None) -> None:
         self.page = page.encode("utf-8")
-        super().__init__((HOST, port), _PageHandler, bind_and_activate=False)
+        super().__init__((HOST, port), handler or PageHandler, bind_and_activate=False)
         try:
             self._bind_from(port)
             self.server_activate()
@@ -63,13 +65,17 @@ class PageServer(ThreadingHTTPServer):
         self.server_name, self.server_port = HOST, self.server_address[1]
 
 
-class _PageHandler(BaseHTTPRequestHandler):
+class PageHandler(BaseHTTPRequestHandler):
+    """Hands out the page at the root, and nothing else."""
+
     server: PageServer
 
     def do_GET(self) -> None:
+        """Answer with the page."""
         self._answer(with_body=True)
 
     def do_HEAD(self) -> None:
+        """Answer with the page's headers."""
         self._answer(with_body=False)
 
     def _answer(self, *, with_body: bool) -> None:
@@ -86,3 +92,12 @@ class _PageHandler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: object) -> None:
         """Stay silent: the terminal belongs to the command."""
+
+
+def opened(url: str) -> bool:
+    """Return whether a browser with windows was started; one in the terminal would show nothing, and would block."""
+    try:
+        browser = webbrowser.get()
+    except webbrowser.Error:
+        return False
+    return type(browser) is not webbrowser.GenericBrowser and browser.open(url)

@@ -9,10 +9,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation.guess import PostureSolver, Start, naive_start, posture_starts, seed_coordinates
+from liftopt.collocation import postures
+from liftopt.collocation.guess import Start, choose, naive_start, posture_starts
+from liftopt.collocation.postures import Posture, PostureSolver, seed_coordinates
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
+from liftopt.errors import SolverError
 
 
 @pytest.mark.parametrize("end", ["start", "end"])
@@ -65,6 +68,45 @@ def test_pose_out_of_reach_has_no_posture(team: Team, make_task: Callable[..., L
     task = make_task(x=-1.2, agent_weights=(1.0, 1.0))
     seed = seed_coordinates(Problem(team, task, RestToRestSpline(6).mesh()), task.start, None)
     assert PostureSolver(team, task).solve(task.start, seed, time.monotonic() + 10.0) is None
+
+
+def test_what_inverse_kinematics_cannot_close_costs_no_solve(
+    team: Team, make_task: Callable[..., LiftTask], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three metres away no seed closes, so the solver is never asked."""
+    task = make_task(x=-1.2, agent_weights=(1.0, 1.0))
+    solver, problem = PostureSolver(team, task), Problem(team, task, RestToRestSpline(6).mesh())
+    monkeypatch.setattr(solver, "_solver", None)
+    seeds = [seed_coordinates(problem, task.start, np.random.default_rng(i)) for i in range(5)]
+    assert list(solver.search(task.start, seeds, time.monotonic() + 10.0)) == [None] * 5
+
+
+def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
+    team: Team, make_task: Callable[..., LiftTask], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From a posture that one solver found, the other finds the same."""
+    task = make_task(agent_weights=(1.0, 1.0))
+    seed = seed_coordinates(Problem(team, task, RestToRestSpline(6).mesh()), task.start, None)
+    found = PostureSolver(team, task).solve(task.start, seed, time.monotonic() + 10.0)
+    assert found is not None
+
+    def missing(*_: object) -> None:
+        raise SolverError("not installed")
+
+    monkeypatch.setattr(postures, "Banded", missing)
+    other = PostureSolver(team, task).solve(task.start, found.coordinates, time.monotonic() + 30.0)
+    assert other is not None
+    np.testing.assert_allclose(other.cost, found.cost, rtol=1e-4)
+
+
+def test_chosen_pairs_share_no_posture_and_no_torques_while_others_are_left() -> None:
+    """Made-up postures of one joint: order of promise, then pairs that share an end, never the same torques."""
+    a, b, c, d = (Posture(np.array([float(i)]), np.zeros(3), 100.0 * (i + 1)) for i in range(4))
+    like_a = Posture(np.array([9.0]), np.zeros(3), 100.5)
+    pairs = [(a, b), (like_a, b), (a, c), (c, d)]
+    assert choose(pairs, 1) == [(a, b)]
+    assert choose(pairs, 2) == [(a, b), (c, d)]
+    assert choose(pairs, 4) == [(a, b), (c, d), (a, c)]
 
 
 def test_starts_join_the_postures_at_rest(starts: list[Start], small_lift: Problem) -> None:

@@ -16,9 +16,10 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation import kernels
+from liftopt.collocation import kernels, libraries
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions
-from liftopt.collocation.kernels import ROLES, Kernel, cache_folder, find_compiler, load_kernels
+from liftopt.collocation.kernels import ROLES, Kernel, find_compiler, load_kernels
+from liftopt.collocation.libraries import cache_folder
 
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler on this machine")
 
@@ -153,7 +154,7 @@ def foreign(path: Path) -> None:
 
 
 def unseal(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[: -kernels.DIGEST_BYTES])
+    path.write_bytes(path.read_bytes()[: -libraries.DIGEST_BYTES])
 
 
 @needs_compiler
@@ -187,7 +188,7 @@ def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) 
     assert compiler is not None
     subprocess.run([*compiler, "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
     path.chmod(0o600)
-    kernels._seal(path)
+    libraries._seal(path)
     assert_right(load_tiny())
 
 
@@ -195,7 +196,7 @@ def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) 
 def test_file_that_others_can_write_is_not_loaded(cache: Path) -> None:
     path = library(cache)
     path.chmod(0o622)
-    assert kernels._load(path, path.stem) is None
+    assert libraries.find_library(path.stem, str) is None
     assert load_tiny().compiled
     assert stat.S_IMODE(path.stat().st_mode) & 0o022 == 0
 
@@ -209,17 +210,6 @@ def test_folder_that_others_can_write_is_not_used(tmp_path: Path, monkeypatch: p
     assert cache_folder() is None
     assert_right(load_tiny())
     assert not list(folder.iterdir())
-
-
-@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners on this system")
-def test_file_of_another_user_is_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same file, seen by another user."""
-    path = tmp_path / "mine.so"
-    path.write_bytes(b"mine")
-    path.chmod(0o600)
-    assert kernels._is_ours(path)
-    monkeypatch.setattr(kernels.os, "getuid", lambda: path.stat().st_uid + 1)
-    assert not kernels._is_ours(path)
 
 
 def test_without_compiler_the_vm_gives_the_same_values_and_says_so(cold: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -314,6 +304,16 @@ def test_two_processes_on_one_cold_cache_end_well(tmp_path: Path) -> None:
     assert [out.strip() for out, _ in ended] == ["compiled", "compiled"]
     assert library(tmp_path / "cold").suffix == ".so"
     assert not list(work.iterdir())
+
+
+def test_key_follows_the_options_of_the_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An option in CC may choose a processor; a wrapper in CC does not."""
+
+    def key(compiler: str) -> str:
+        monkeypatch.setenv("CC", compiler)
+        return kernels.kernel_key(agent_functions, tiny_topology())
+
+    assert key("gcc -mavx2") != key("gcc") == key("ccache gcc")
 
 
 def test_key_follows_topology_and_builder(make_chain: Callable[..., pin.Model]) -> None:

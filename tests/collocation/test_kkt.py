@@ -35,11 +35,10 @@ def test_agent_knot_jacobian_by_finite_differences(
     name: str, human: Agent, sawyer: Agent, make_arm: Callable[..., Agent], rng: np.random.Generator
 ) -> None:
     agent = {"human": human, "sawyer": sawyer, "arm": make_arm(5)}[name]
-    model = agent.reduced()
-    data, y = model.createData(), rng.normal(size=3 * model.nv + 3)
+    y = rng.normal(size=3 * agent.reduced().nv + 3)
     y[-3:] *= 20.0
-    _, jacobian = kkt._agent_knot(agent, model, data, y, 1.7)
-    numeric = differences(lambda at: kkt._agent_knot(agent, model, data, at, 1.7)[0], y)
+    jacobian = kkt._agent_knots(agent, y[None], 1.7)[1][0]
+    numeric = differences(lambda at: kkt._agent_knots(agent, at[None], 1.7)[0][0], y)
     np.testing.assert_allclose(jacobian, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
 
@@ -47,9 +46,9 @@ def test_object_knot_jacobian_by_finite_differences(
     make_box: Callable[..., LiftedObject], table: LiftedObject, rng: np.random.Generator
 ) -> None:
     for held in (table, make_box(rng.normal(size=(3, 3)))):
-        data, y = held.model.createData(), rng.normal(size=18 + 3 * len(held.grasp_frames))
-        _, jacobian = kkt._object_knot(held, data, y, 1.7)
-        numeric = differences(lambda at, held=held, data=data: kkt._object_outputs(held, data, at, 1.7), y)
+        y = rng.normal(size=18 + 3 * len(held.grasp_frames))
+        jacobian = kkt._object_slopes(held, y[None], 1.7)[0]
+        numeric = differences(lambda at, held=held: kkt._object_outputs(held, at[None], 1.7)[0], y)
         np.testing.assert_allclose(jacobian, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
 
@@ -61,19 +60,19 @@ def test_knots_agree_with_the_uncompiled_functions(
 ) -> None:
     """Pinocchio's values in double precision against CasADi's, an independent path of both."""
     _, topology, functions = knot_functions["human"]
-    y, model = rng.normal(size=33), human.reduced()
-    c, jacobian = kkt._agent_knot(human, model, model.createData(), y, 1.3)
+    y = rng.normal(size=33)
+    (c,), (jacobian,) = kkt._agent_knots(human, y[None], 1.3)
     p = np.r_[1.3, topology.parameters]
     np.testing.assert_allclose(functions.value(y, p).full().ravel(), c, rtol=0, atol=1e-12 * np.abs(c).max())
     expected = functions.jacobian(y, p).full()
     np.testing.assert_allclose(expected, jacobian, rtol=0, atol=1e-12 * np.abs(expected).max())
     _, topology, functions = knot_functions["table"]
     y = rng.normal(size=24)
-    c, jacobian = kkt._object_knot(table, table.model.createData(), y, 1.3)
+    (c,), (jacobian,) = kkt._object_outputs(table, y[None], 1.3), kkt._object_slopes(table, y[None], 1.3)
     p = np.r_[1.3, topology.parameters]
     np.testing.assert_allclose(functions.value(y, p).full().ravel(), c, rtol=0, atol=1e-12 * np.abs(c).max())
     expected = functions.jacobian(y, p).full()
-    np.testing.assert_allclose(expected, jacobian, rtol=0, atol=1e-9 * np.abs(expected).max())
+    np.testing.assert_allclose(expected, jacobian, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
 def test_perturbed_point_is_found_out(small_lift: Problem, solved: SolverResult, rng: np.random.Generator) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from liftopt.collocation import lanes
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
 from liftopt.collocation.kernels import find_compiler
 from liftopt.collocation.lanes import WideKernel, load_wide
@@ -81,10 +82,10 @@ def test_every_lane_is_the_function_of_one_knot(
 
 
 def test_they_are_compiled_once(kernels: list[WideKernel], knot_functions: Built, cache: Path) -> None:
-    files = {f.name: f.stat().st_mtime_ns for f in cache.iterdir()}
+    files = {f.name: f.stat().st_ino for f in cache.iterdir()}
     lines: list[str] = []
     assert load_wide([(agent_functions, knot_functions["arm"][1])], lines.append) is not None
-    assert not lines and {f.name: f.stat().st_mtime_ns for f in cache.iterdir()} == files
+    assert not lines and {f.name: f.stat().st_ino for f in cache.iterdir()} == files
 
 
 def test_a_damaged_file_is_compiled_anew(kernels: list[WideKernel], knot_functions: Built, cache: Path) -> None:
@@ -105,3 +106,28 @@ def test_without_a_compiler_there_are_none(
     monkeypatch.setenv("CC", "")
     monkeypatch.setenv("LIFTOPT_CACHE", str(tmp_path))
     assert load_wide([(agent_functions, knot_functions["arm"][1])]) is None
+
+
+def test_another_processor_does_not_find_them(
+    kernels: list[WideKernel], knot_functions: Built, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a compiler there it has none, rather than code that it cannot run."""
+    monkeypatch.setattr(lanes, "EXTENSIONS", ())
+    monkeypatch.setenv("CC", "")
+    assert load_wide([(object_functions, knot_functions["box"][1])]) is None
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("flags\t\t: fpu sse2 avx avx2 fma abm", ("-mavx", "-mavx2", "-mfma")),
+        ("flags\t\t: fpu avx512fp16 avx512_bf16", ()),
+        ("Features\t: fp asimd", ()),
+    ],
+)
+def test_only_what_the_processor_has_is_asked_of_the_compiler(
+    line: str, expected: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Processors as Linux describes them, with extensions whose names begin like ours."""
+    monkeypatch.setattr(lanes.Path, "read_text", lambda path: f"processor\t: 0\n{line}\n")
+    assert lanes._extensions() == expected

@@ -51,6 +51,32 @@ def test_yourdfpy_agrees_on_kinematics(agents, name, frame_pose):
     )
 
 
+def test_yourdfpy_finds_the_descriptions_valid_and_writes_them_the_same(agents):
+    """They are written without its help: it reads them, has nothing to say, and writes what it has read."""
+    table = lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02)
+    for text in (agents["human"].urdf, agents["robot"].urdf, table.urdf):
+        read = yourdfpy.URDF.load(BytesIO(text.encode()), load_meshes=False, build_scene_graph=False)
+        assert read.validate(), read.errors
+        ours, theirs = ElementTree.fromstring(text), ElementTree.fromstring(read.write_xml_string())
+        for joint in theirs.findall("joint[@type='fixed']"):  # it gives them an axis all the same
+            joint.remove(joint.find("axis"))
+        for one, other in zip(ours.iter(), theirs.iter(), strict=True):
+            assert one.tag == other.tag
+            assert one.attrib.keys() == other.attrib.keys(), one.tag
+            for key in one.attrib.keys() - {"rpy"}:  # one rotation has many triples of angles
+                assert _values(one.get(key)) == _values(other.get(key)), (one.tag, key)
+            if "rpy" in one.attrib:
+                turns = [pin.rpy.rpyToMatrix(np.array(_values(item.get("rpy")))) for item in (one, other)]
+                np.testing.assert_allclose(*turns, rtol=0.0, atol=1e-6)
+
+
+def _values(text: str) -> list[float | str]:
+    try:
+        return [float(word) + 0.0 for word in text.split()]
+    except ValueError:
+        return [text]
+
+
 @pytest.mark.parametrize("name", ["human", "robot"])
 def test_contract_of_names_and_types(agents, name):
     root = ElementTree.fromstring(agents[name].urdf)

@@ -14,7 +14,7 @@ from liftopt.collocation.guess import Start
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
-from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
@@ -102,6 +102,25 @@ def test_warm_start_of_a_neighbouring_task(
     found = ipopt.solve(solved.x, deadline=time.monotonic() + 60.0, warm=solved.multipliers, problem=other)
     assert found.converged and found.iterations < solved.iterations
     assert kkt_error(other, found.x, found.multipliers).error <= 1e-6
+
+
+def test_a_warm_start_that_fails_becomes_a_cold_one(
+    ipopt: Ipopt, starts: list[Start], solved: SolverResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two iterations are too few for the warm start; the cold one is the solver's own from there."""
+    warmed = Ipopt(ipopt.problem)
+    monkeypatch.setattr("liftopt.collocation.solvers.ipopt.WARM_ITERATIONS", 2)
+    nothing = Multipliers(np.zeros_like(solved.multipliers.x), np.zeros_like(solved.multipliers.g))
+    found = warmed.solve(starts[0].x, deadline=time.monotonic() + 60.0, warm=nothing)
+    assert found.converged
+    assert found.status == "Solve_Succeeded (cold, after warm: Maximum_Iterations_Exceeded)"
+    assert found.iterations == solved.iterations + 2
+    np.testing.assert_array_equal(found.x, solved.x)
+
+
+def test_a_warm_start_past_its_deadline_stays_stopped(ipopt: Ipopt, starts: list[Start], solved: SolverResult) -> None:
+    found = ipopt.solve(starts[0].x, deadline=time.monotonic() - 1.0, warm=solved.multipliers)
+    assert not found.converged and found.status == STOPPED
 
 
 def test_a_problem_with_other_rows_is_refused(

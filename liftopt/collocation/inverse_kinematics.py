@@ -1,0 +1,135 @@
+"""Postures that bring every grasp to the object, from many seeds at once: closure and half-spaces, without forces.
+
+Levenberg's and Marquardt's method on the grasp gaps, in its dual form: the steps have the least norm, so a posture
+stays near its seed, and the systems to solve are as small as the number of gaps. Joints at a limit that a step
+would cross are held for that step.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.batch import Batch
+from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
+from liftopt.collocation.problem import Problem
+
+Array = npt.NDArray[np.float64]
+CLOSED = 1e-6  # [m]
+LONGEST_STEP = 0.6  # [rad]
+DAMPING, EASE, TIGHTEN, STUCK = 1e-3, 0.2, 8.0, 1e6
+# Damping falls no lower: two stretched arms leave the gaps nearly dependent.
+LEAST_DAMPING = 1e-9
+# An iteration that gains less than this share of the squared gaps is the last.
+STALLED = 1e-9
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How near the grasps come from each of B seeds.
+
+    Attributes:
+        coordinates: (B, n) joints of every agent, then the object's six coordinates.
+        gaps: (B, agents) distance left between each agent's grasp and its point on the object [m].
+        outside: (B, agents) how far each grasp is outside its half-space [m]; 0 where there is none.
+    """
+
+    coordinates: Array
+    gaps: Array
+    outside: Array
+
+    @property
+    def shortfall(self) -> Array:
+        """(B,) the largest of what is missing [m]."""
+        return np.asarray(np.maximum(self.gaps, self.outside).max(axis=1))
+
+
+class InverseKinematics:
+    """Inverse kinematics of a team, on a problem of one knot at rest."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        blocks = problem.constraints.blocks
+        names = [agent.name for agent in problem.team.agents]
+        closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "closure"]
+        keep_in = [b for b in blocks if b.name == "keep_in"]
+        self._kept = [names.index(b.who) for b in keep_in]
+        self._offset = np.array([float(b.lower[0]) for b in keep_in])
+        self._n_closure = FORCE_SIZE * len(closure)
+        rows = np.concatenate([*closure, *(np.arange(b.rows.start, b.rows.stop) for b in keep_in)])
+        self._batch = Batch(problem, rows)
+        self._columns = problem.layout.control[0]
+
+    def reach(
+        self, pose: Array, seeds: Array, deadline: float, *, most: int, any_angle: bool = False, anywhere: bool = False
+    ) -> Reach:
+        """Bring all grasps as near as possible.
+
+        Args:
+            pose: (6,) of the object; NaN leaves a coordinate free within the task's range.
+            seeds: (B, n) coordinates to start from.
+            deadline: ``time.monotonic`` value past which it returns what it has.
+            most: iterations.
+            any_angle: leave out the joints' ranges of motion.
+            anywhere: leave out the half-spaces.
+        """
+        lower, upper = self._bounds(pose, any_angle)
+        x = np.zeros((len(seeds), self.problem.layout.n_x))
+        x[:, self._columns] = np.clip(seeds, lower, upper)
+        damping, left = np.full(len(x), DAMPING), self._left(x, anywhere)
+        todo = np.arange(len(x))
+        for _ in range(most):
+            todo = todo[(np.abs(left[todo]).max(axis=1) > CLOSED / 10) & (damping[todo] < STUCK)]
+            if not len(todo) or time.monotonic() > deadline:
+                break
+            trial = x[todo]
+            here = trial[:, self._columns]
+            slopes = self._batch.slopes(trial)[:, :, self._columns] * (left[todo] != 0)[:, :, None]
+            step = _least_norm_step(slopes, left[todo], damping[todo], here - lower, upper - here)
+            trial[:, self._columns] = np.clip(here + step, lower, upper)
+            after = self._left(trial, anywhere)
+            was, now = (left[todo] ** 2).sum(axis=1), (after**2).sum(axis=1)
+            better = now < was
+            x[todo[better]], left[todo[better]] = trial[better], after[better]
+            damping[todo] = np.where(better, np.maximum(EASE * damping[todo], LEAST_DAMPING), TIGHTEN * damping[todo])
+            damping[todo[better & (was - now < STALLED * was)]] = STUCK
+        gaps = np.linalg.norm(left[:, : self._n_closure].reshape(len(x), -1, FORCE_SIZE), axis=2)
+        outside = np.zeros_like(gaps)
+        outside[:, self._kept] = -self._left(x, False)[:, self._n_closure :]
+        return Reach(x[:, self._columns], gaps, outside)
+
+    def _left(self, x: Array, anywhere: bool) -> Array:
+        """Return the vectors between grasps and the (negative) distances to the half-spaces; 0 inside them."""
+        left = self._batch.rows(x)
+        kept = left[:, self._n_closure :]
+        kept[:] = 0.0 if anywhere else np.minimum(0.0, kept - self._offset)
+        return left
+
+    def _bounds(self, pose: Array, any_angle: bool) -> tuple[Array, Array]:
+        task = replace(self.problem.task, start=pose, end=pose)
+        lower, upper = (bound[self._columns] for bound in replace(self.problem, task=task).bounds())
+        if any_angle:
+            lower[:-OBJECT_SIZE], upper[:-OBJECT_SIZE] = -np.pi, np.pi
+        return lower, upper
+
+
+def _least_norm_step(slopes: Array, left: Array, damping: Array, below: Array, above: Array) -> Array:
+    """Return the damped step (B, n) of least norm that closes ``left``, within the room ``below`` and ``above``."""
+    free, size = (below + above > 0).astype(float), left.shape[1]
+    # Rows that do not count have no slopes: their equations become 0 = 0.
+    off = np.where((slopes == 0).all(axis=2), 1.0, damping[:, None])
+    step = np.zeros_like(below)
+    for _ in range(2):
+        held = slopes * free[:, None, :]
+        system = held @ slopes.transpose(0, 2, 1)
+        system[:, range(size), range(size)] += off
+        step = -(held.transpose(0, 2, 1) @ np.linalg.solve(system, left[:, :, None]))[:, :, 0]
+        crossing = (free > 0) & (((below <= 0) & (step < 0)) | ((above <= 0) & (step > 0)))
+        if not crossing.any():
+            break
+        free[crossing] = 0.0
+    longest = np.abs(step).max(axis=1, keepdims=True)
+    return np.asarray(step * np.minimum(1.0, LONGEST_STEP / np.maximum(longest, CLOSED)))

@@ -1,0 +1,127 @@
+"""Static postures: the object held at a pose within every limit, at the least squared torque.
+
+Inverse kinematics from many seeds at once brings the grasps to the object; what it cannot close is dropped before a
+solve is spent on it. The others go to the banded solver, on the equations of the lift for one knot at rest.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.inverse_kinematics import CLOSED, InverseKinematics
+from liftopt.collocation.kernels import Say
+from liftopt.collocation.layout import FORCE_SIZE
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
+from liftopt.collocation.solvers.result import Solver
+from liftopt.collocation.spline import Mesh
+from liftopt.collocation.task import LiftTask
+from liftopt.errors import SolverError
+
+Array = npt.NDArray[np.float64]
+POSTURE_WEIGHT = 1e-2
+# Seeds spread by this share of each joint's range about the comfortable posture.
+SPREAD = 0.25
+# A seed that inverse kinematics has not closed by then seldom closes.
+CLOSING_ITERATIONS = 20
+MAX_ITERATIONS = 100
+TOLERANCE = 1e-5
+
+
+@dataclass(frozen=True)
+class Posture:
+    """A static posture that holds the object.
+
+    Attributes:
+        coordinates: (n,) joints of every agent, then the object's six coordinates.
+        force: (3 agents,) grasp forces on the object [N].
+        cost: objective of holding still for the task's duration.
+    """
+
+    coordinates: Array
+    force: Array
+    cost: float
+
+
+class PostureSolver:
+    """Static postures of a team with the object at a given pose."""
+
+    def __init__(
+        self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None
+    ) -> None:
+        """Build the solver.
+
+        Args:
+            team: who holds what.
+            task: its limits and weights; poses are given to ``solve``.
+            say: hears of it when kernels must be compiled first.
+            like: another one, whose solver is taken if it fits.
+        """
+        self.problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
+        self.kinematics = InverseKinematics(self.problem)
+        self._solver: Solver
+        self._at_pose: dict[bytes, Problem] = {}
+        if like is not None and self.problem.interchangeable(like.problem):
+            self._solver = like._solver
+            return
+        try:
+            self._solver = Banded(self.problem, BandedOptions(TOLERANCE, MAX_ITERATIONS), say)
+        except SolverError:
+            self._solver = Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))
+
+    def solve(self, pose: Array, seed: Array, deadline: float) -> Posture | None:
+        """Return the posture found from ``seed`` (coordinates), or None; NaN in ``pose`` (6,) leaves that free."""
+        return next(self.search(pose, [seed], deadline))
+
+    def search(self, pose: Array, seeds: Sequence[Array], deadline: float) -> Iterator[Posture | None]:
+        """Yield what is found from each seed: all are brought to the object at once, and held one by one."""
+        if not seeds:
+            return
+        reach = self.kinematics.reach(pose, np.array(seeds), deadline, most=CLOSING_ITERATIONS)
+        for coordinates, shortfall in zip(reach.coordinates, reach.shortfall, strict=True):
+            yield self._hold(pose, coordinates, deadline) if shortfall < CLOSED else None
+
+    def _hold(self, pose: Array, coordinates: Array, deadline: float) -> Posture | None:
+        if time.monotonic() > deadline:
+            return None
+        key = pose.tobytes()
+        if key not in self._at_pose:
+            self._at_pose[key] = replace(self.problem, task=replace(self.problem.task, start=pose, end=pose))
+        problem = self._at_pose[key]
+        model = problem.team.held.model
+        weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
+        share = np.zeros(problem.layout.force.shape)
+        share[:, 2::FORCE_SIZE] = weight / len(problem.team.agents)
+        result = self._solver.solve(problem.pack(coordinates[None, :], share), deadline=deadline, problem=problem)
+        if not result.converged:
+            return None
+        control, force = problem.unpack(result.x)
+        return Posture(control[0], force[0], result.objective)
+
+
+def seed_coordinates(problem: Problem, pose: Array, rng: np.random.Generator | None) -> Array:
+    """Return coordinates to search a posture from: the comfortable ones, or spread about them by ``rng``."""
+    task = problem.task
+    guess = np.where(np.isnan(pose), np.clip(0.0, task.pose_lower, task.pose_upper), pose)
+    blocks = []
+    for agent in problem.team.agents:
+        q, limits = agent.posture, agent.limits
+        if rng is not None:
+            q = q + SPREAD * (limits.q_upper - limits.q_lower) * rng.standard_normal(len(q))
+        blocks.append(np.clip(q, limits.q_lower, limits.q_upper))
+    return np.concatenate([*blocks, guess])
+
+
+def distinct(postures: Iterable[Posture | None], apart: float) -> list[Posture]:
+    """Return the postures that differ by more than ``apart`` [rad] in some joint, the first of each kind."""
+    kept: list[Posture] = []
+    for posture in postures:
+        if posture and all(np.abs(posture.coordinates - other.coordinates).max() > apart for other in kept):
+            kept.append(posture)
+    return kept

@@ -1,0 +1,41 @@
+"""The shipped models' kernels compiled into a folder when a wheel is built: ``python -m liftopt.ship_kernels FOLDER``.
+
+A kernel is parametric in subject, tool and object, so these few serve every scenario. Installed with the package they
+save a user the wait at the first solve, and the need for a compiler.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from liftopt.collocation.dynamics import agent_functions, object_functions
+from liftopt.collocation.lanes import load_wide
+from liftopt.collocation.problem import Team
+from liftopt.scenario import load_scenario
+from liftopt.scene import agents_of, object_of
+
+
+def ship(folder: str) -> bool:
+    """Compile the kernels into a folder and return whether all are there."""
+    os.environ["LIFTOPT_CACHE"] = folder
+    scenario = load_scenario()
+    team = Team.of(agents_of(scenario), object_of(scenario), _say)
+    builders = [agent_functions] * len(team.agents) + [object_functions]
+    wide = load_wide(list(zip(builders, team.topologies, strict=True)), _say)
+    return wide is not None and all(kernel.compiled for kernel in team.kernels)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command; its exit status is 1 where a kernel is missing."""
+    (folder,) = arguments
+    return 0 if ship(folder) else 1
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

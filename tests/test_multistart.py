@@ -1,0 +1,63 @@
+"""Several starts at a time: the same answer as one after the other, and no solver in two hands."""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from liftopt.collocation.guess import Start
+from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
+from liftopt.lift import lift
+from liftopt.multistart import solve_all
+from liftopt.scenario import load_scenario
+from liftopt.workshop import Workshop
+
+
+@dataclass
+class Slow:
+    """A solver that takes a while and returns its start."""
+
+    busy: threading.Lock = field(default_factory=threading.Lock)
+    deadlines: list[float] = field(default_factory=list)
+
+    def solve(self, x0: np.ndarray, *, deadline: float, warm: object = None, problem: object = None) -> SolverResult:
+        """Wait for as long as the start says."""
+        assert self.busy.acquire(blocking=False), "two threads use one solver"
+        time.sleep(float(x0[0]))
+        self.deadlines.append(deadline)
+        self.busy.release()
+        return SolverResult(x0, Multipliers(x0, x0), float(x0[0]), 1, True, STOPPED, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_results_come_in_the_order_of_the_starts(workers: int) -> None:
+    starts = [Start(f"start {i}", np.array([wait])) for i, wait in enumerate((0.03, 0.0, 0.02, 0.0, 0.01, 0.0))]
+    solvers = [Slow() for _ in range(workers)]
+    results = list(solve_all(solvers, starts, time.monotonic() + 60.0))
+    assert [result.objective for result in results] == [float(start.x[0]) for start in starts]
+    assert all(solver.deadlines for solver in solvers)
+
+
+def test_one_start_of_several_may_not_take_all_the_time() -> None:
+    solver, now = Slow(), time.monotonic()
+    list(solve_all([solver], [Start("a", np.zeros(1)), Start("b", np.zeros(1))], now + 100.0))
+    list(solve_all([solver], [Start("a", np.zeros(1))], now + 100.0))
+    np.testing.assert_allclose(np.array(solver.deadlines) - now, [50.0, 50.0, 100.0], atol=1.0)
+
+
+def test_workers_and_a_kept_workshop_change_nothing() -> None:
+    """Bit by bit: one worker, two workers, and a second time with what was kept."""
+    one = lift(load_scenario("table5", ["solver.name=banded", "solver.starts=3", "solver.intervals=16"]))
+    both, workshop = load_scenario("table5", ["solver.name=banded", "solver.starts=3", "solver.intervals=16",
+                                              "solver.workers=2"]), Workshop()  # fmt: skip
+    assert one.solved
+    for other in (lift(both, workshop=workshop), lift(both, workshop=workshop)):
+        assert other.objective == one.objective
+        assert [(s.name, s.objective) for s in other.starts] == [(s.name, s.objective) for s in one.starts]
+        for ours, theirs in zip(one.agents, other.agents, strict=True):
+            np.testing.assert_array_equal(ours.q, theirs.q)
+            np.testing.assert_array_equal(ours.tau, theirs.tau)
