@@ -20,7 +20,10 @@ from typing import Any
 
 import liftopt
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
+from liftopt.lab.calibrate_command import add_calibrate_parser, calibrate_text
+from liftopt.lab.forces_command import add_forces_parser, forces_text
 from liftopt.lab.mocap_command import add_mocap_parser, mocap
+from liftopt.lab.record_command import add_record_parser, record
 from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
 from liftopt.scenario_schema import describe
 
@@ -149,6 +152,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     plot.set_defaults(run=_plot)
     add_mocap_parser(commands, _mocap)
+    add_calibrate_parser(commands, _calibrate)
+    add_record_parser(commands, _record)
+    add_forces_parser(commands, _forces)
     return parser
 
 
@@ -194,6 +200,21 @@ def _plot(args: argparse.Namespace) -> int:
 
 def _mocap(args: argparse.Namespace) -> int:
     _write(mocap(args))
+    return SOLVED
+
+
+def _calibrate(args: argparse.Namespace) -> int:
+    _write(calibrate_text(args))
+    return SOLVED
+
+
+def _record(args: argparse.Namespace) -> int:
+    record(args, say=lambda line: _write(line + "\n"))
+    return SOLVED
+
+
+def _forces(args: argparse.Namespace) -> int:
+    _write(forces_text(args))
     return SOLVED
 
 

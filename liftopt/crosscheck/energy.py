@@ -1,0 +1,118 @@
+"""Conservation of energy: what torques and forces do, against how kinetic and potential energy change.
+
+Along the motion between the knots (``liftopt.interpolation``) the power of every joint torque and of every grasp force
+is integrated by Simpson's rule, in panels that end at the knots, and compared with Pinocchio's energies. The work never
+meets the mass matrix and the energies never meet the torques, so a wrong torque, force or velocity shows.
+
+An agent and the object each close their books to the error of the quadrature alone, of fourth order. All together
+they close up to what the transcription leaves: the balance of the object holds at the knots only, as does closure, so
+between them a grasp force moves two points that are a little apart. That work is given apart, and it is the
+transcription's error in energy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from liftopt.interpolation import refined
+from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.scene import agents_of, object_of
+from liftopt.solution import Solution
+from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class EnergyBooks:
+    """The books of one agent, of the object or of all, at the K knots; everything is 0 at the first [J].
+
+    Attributes:
+        name: whose books.
+        change: (K,) kinetic plus potential energy, less that of the start.
+        work: name -> (K,) work done by the joint torques, the grasp forces and the rest.
+    """
+
+    name: str
+    change: Array
+    work: dict[str, Array]
+
+    @property
+    def error(self) -> float:
+        """Largest difference of work and change of energy at a knot [J]."""
+        return float(np.abs(np.sum(list(self.work.values()), axis=0) - self.change).max())
+
+    @property
+    def relative(self) -> float:
+        """That error over the largest change of energy."""
+        return self.error / float(np.abs(self.change).max())
+
+
+def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
+    """Return the books of each agent, of the object, and of all together.
+
+    Work is under ``"torques"``, ``"grasp forces"`` (of the object on an agent, of the agents on the object) and, for
+    the object, ``"unbalanced"``: the residual of the balance (eq. 17), which the motion needs and nobody gives. In the
+    books of all, ``"unbalanced"`` also holds what the grasp forces do where the grasp points part between knots.
+
+    Args:
+        solution: what was solved.
+        panels: panels of Simpson's rule between two knots.
+    """
+    factor = 2 * panels
+    dense = refined(solution, factor)
+    models = agents_of(solution.scenario, solution.urdfs)
+    books = [_agent(*pair, dense.time, factor) for pair in zip(models, dense.agents, strict=True)]
+    forces = [agent.grasp_force for agent in dense.agents]
+    books.append(_object(object_of(solution.scenario, solution.urdfs), dense.held, forces, dense.time, factor))
+    *agents, held = books
+    total = {
+        "torques": np.sum([agent.work["torques"] for agent in agents], axis=0),
+        "unbalanced": np.sum([book.work["grasp forces"] for book in books], axis=0) + held.work["unbalanced"],
+    }
+    return (*books, EnergyBooks("all", np.sum([book.change for book in books], axis=0), total))
+
+
+def unexplained(books: tuple[EnergyBooks, ...]) -> float:
+    """Return the transcription's error in energy: the largest unbalanced work over the largest change of energy."""
+    total = books[-1]
+    return float(np.abs(total.work["unbalanced"]).max() / np.abs(total.change).max())
+
+
+def _agent(model: Agent, agent: AgentTrajectory, time: Array, factor: int) -> EnergyBooks:
+    energy, grip = np.zeros(len(time)), np.zeros((len(time), 3))
+    data, frame = model.model.createData(), model.model.getFrameId(model.grasp_frame)
+    for k in range(len(time)):
+        energy[k] = pin.computeMechanicalEnergy(model.model, data, agent.q[k], agent.v[k])
+        pin.forwardKinematics(model.model, data, agent.q[k], agent.v[k])
+        grip[k] = pin.getFrameVelocity(model.model, data, frame, pin.LOCAL_WORLD_ALIGNED).linear
+    work = {
+        "torques": _integral((agent.tau * agent.v).sum(axis=1), time, factor),
+        "grasp forces": _integral(-(agent.grasp_force * grip).sum(axis=1), time, factor),
+    }
+    return EnergyBooks(agent.name, (energy - energy[0])[::factor], work)
+
+
+def _object(model: LiftedObject, held: ObjectTrajectory, forces: list[Array], time: Array, factor: int) -> EnergyBooks:
+    data, energy, unbalanced = model.model.createData(), np.zeros(len(time)), np.zeros(len(time))
+    for k in range(len(time)):
+        q, v, _ = free_flyer_state(held.pose[k], held.pose_velocity[k], held.pose_acceleration[k])
+        energy[k] = pin.computeMechanicalEnergy(model.model, data, q, v)
+        unbalanced[k] = held.wrench[k, :3] @ held.velocity[k, :3] + held.wrench[k, 3:] @ v[3:]
+    power = np.zeros(len(time))
+    for i, force in enumerate(forces):
+        lever = held.grasp_position[:, i] - held.pose[:, :3]
+        power += (force * (held.velocity[:, :3] + np.cross(held.velocity[:, 3:], lever))).sum(axis=1)
+    work = {"grasp forces": _integral(power, time, factor), "unbalanced": _integral(unbalanced, time, factor)}
+    return EnergyBooks(held.name, (energy - energy[0])[::factor], work)
+
+
+def _integral(power: Array, time: Array, factor: int) -> Array:
+    """Return the integral (K,) from the first knot to each, by Simpson's rule, ``factor / 2`` panels an interval."""
+    step = np.diff(time)[::2]
+    panels = step / 3 * (power[:-1:2] + 4 * power[1::2] + power[2::2])
+    return np.concatenate([[0.0], np.cumsum(panels.reshape(-1, factor // 2).sum(axis=1))])

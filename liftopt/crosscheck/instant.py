@@ -1,0 +1,173 @@
+"""The equations of a lift at one instant, as CasADi expressions, written apart from the knot kernels of the solve.
+
+Agents: Pinocchio's RNEA with the grasp reaction as an external force on the joint that carries the grasp. Object:
+Newton's and Euler's equations in closed form, no Pinocchio. Both with the models' numbers in place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, LiftedObject
+
+Array = npt.NDArray[np.float64]
+OBJECT_SIZE, FORCE_SIZE = 6, 3
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """What moves: the agents' joints that are not pinned, then the object's coordinates that are not locked.
+
+    Attributes:
+        joints: number of moving joints of each agent.
+        unlocked: which of the object's six coordinates may move; those whose range is one value stay there.
+        locked_pose: (6,) that value, 0 for the others.
+    """
+
+    joints: tuple[int, ...]
+    unlocked: npt.NDArray[np.int64]
+    locked_pose: Array
+
+    @staticmethod
+    def of(agents: tuple[Agent, ...], task: LiftTask) -> Coordinates:
+        """Read off who moves what."""
+        locked = task.pose_lower == task.pose_upper
+        return Coordinates(
+            tuple(len(agent.posture) for agent in agents), np.flatnonzero(~locked), np.where(locked, task.pose_lower, 0)
+        )
+
+    @property
+    def n_joints(self) -> int:
+        """Number of moving joints of all agents."""
+        return sum(self.joints)
+
+    @property
+    def n_q(self) -> int:
+        """Number of coordinates."""
+        return self.n_joints + len(self.unlocked)
+
+    @property
+    def n_force(self) -> int:
+        """Number of components of the grasp forces."""
+        return FORCE_SIZE * len(self.joints)
+
+    def select(self, columns: Array, pose: Array) -> Array:
+        """Return (K, n_q) coordinates from the joints' (K, n_joints) and the object's six (K, 6)."""
+        return np.hstack([columns, pose[:, self.unlocked]])
+
+
+@dataclass(frozen=True)
+class Instant:
+    """Functions of y = (q, v, a, f, tau) at one instant: coordinates, rates, grasp forces, joint torques.
+
+    Attributes:
+        dynamics: y -> (n_joints,) torques less those that the motion and the grasp reaction need [Nm].
+        balance: y -> (6,) force, world axes, and moment, body axes, that the object's motion needs, less what the
+            grasps give [N, Nm].
+        closure: q -> (3 agents,) each agent's grasp point less the object's [m].
+        grasp: y -> (agents,) squared norms of the grasp forces [N^2].
+        keep_in: q -> (agents with a half-space,) distance of the grasp point from its border [m].
+    """
+
+    coordinates: Coordinates
+    dynamics: Any
+    balance: Any
+    closure: Any
+    grasp: Any
+    keep_in: Any
+
+
+def instant(agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask) -> Instant:
+    """Write the equations down for agents that hold one object, in the order of its grasp frames."""
+    at = Coordinates.of(agents, task)
+    q, v, a = (ca.SX.sym(name, at.n_q) for name in ("q", "v", "a"))
+    force, tau = ca.SX.sym("f", at.n_force), ca.SX.sym("tau", at.n_joints)
+    forces = ca.vertsplit(force, FORCE_SIZE)
+    ends = np.cumsum([0, *at.joints])
+    own = [slice(int(first), int(last)) for first, last in pairwise(ends)]
+    needed, hands = zip(
+        *(_agent(agent, q[s], v[s], a[s], f) for agent, s, f in zip(agents, own, forces, strict=True)), strict=True
+    )
+    pose = [_six(at, x[at.n_joints :], constant) for x, constant in ((q, at.locked_pose), (v, 0.0), (a, 0.0))]
+    balance, *edges = _object_equations(held)(*pose, force)
+    distances = [
+        ca.dot(agent.keep_in.normal, hand) - agent.keep_in.offset
+        for agent, hand in zip(agents, hands, strict=True)
+        if agent.keep_in is not None
+    ]
+    y = ca.vertcat(q, v, a, force, tau)
+    return Instant(
+        at,
+        ca.Function("dynamics", [y], ca.cse([tau - ca.vertcat(*needed)])),
+        ca.Function("balance", [y], ca.cse([balance])),
+        ca.Function("closure", [q], ca.cse([ca.vertcat(*hands) - ca.vertcat(*edges)])),
+        ca.Function("grasp", [y], [ca.vertcat(*(ca.dot(f, f) for f in forces))]),
+        ca.Function("keep_in", [q], ca.cse([ca.vertcat(*distances)])),
+    )
+
+
+def _agent(agent: Agent, q: Any, v: Any, a: Any, force: Any) -> tuple[Any, Any]:
+    """Return the torques (n,) that an agent needs and its grasp point (3,) in the world."""
+    import liftopt.pinocchio_casadi as cpin
+
+    reduced = agent.reduced()
+    frame = reduced.frames[reduced.getFrameId(agent.grasp_frame)]
+    lever, joint = frame.placement.translation, frame.parentJoint
+    model = cpin.Model(reduced)
+    data = model.createData()
+    cpin.forwardKinematics(model, data, q)
+    placement = data.oMi[joint]
+    reaction = -ca.mtimes(placement.rotation.T, force)
+    external = cpin.StdVec_Force([cpin.Force.Zero() for _ in range(reduced.njoints)])
+    external[joint] = cpin.Force(reaction, ca.cross(lever, reaction))
+    tau = cpin.rnea(model, model.createData(), q, v, a, external)
+    return tau, placement.translation + ca.mtimes(placement.rotation, lever)
+
+
+def _object_equations(held: LiftedObject) -> Any:
+    """Return (pose, rates, second derivatives, forces) -> balance and each grasp point, see ``Instant``."""
+    body, gravity, m = held.model.inertias[1], held.model.gravity.linear, len(held.grasp_frames)
+    pose, rate, second = (ca.SX.sym(name, OBJECT_SIZE) for name in ("pose", "rate", "second"))
+    force = ca.SX.sym("force", FORCE_SIZE * m)
+    turn = _turn_x(pose[3]) @ _turn_y(pose[4]) @ _turn_z(pose[5])
+    spin = turn.T @ ca.reshape(ca.jtimes(ca.vec(turn), pose, rate), 3, 3)
+    omega = ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0])
+    alpha = ca.jtimes(omega, ca.vertcat(pose, rate), ca.vertcat(rate, second))
+    inertia = ca.DM(body.inertia)
+    levers = [ca.DM(held.model.frames[held.model.getFrameId(name)].placement.translation) for name in held.grasp_frames]
+    newton = body.mass * (second[:3] - gravity)
+    euler = inertia @ alpha + ca.cross(omega, inertia @ omega)
+    for lever, grip in zip(levers, ca.vertsplit(force, FORCE_SIZE), strict=True):
+        newton -= grip
+        euler -= ca.cross(lever, turn.T @ grip)
+    points = [pose[:3] + turn @ lever for lever in levers]
+    return ca.Function("object", [pose, rate, second, force], [ca.vertcat(newton, euler), *points])
+
+
+def _six(at: Coordinates, unlocked: Any, constant: Any) -> Any:
+    pose = ca.SX(np.broadcast_to(constant, OBJECT_SIZE).tolist())
+    for i, coordinate in enumerate(at.unlocked):
+        pose[int(coordinate)] = unlocked[i]
+    return pose
+
+
+def _turn_x(angle: Any) -> Any:
+    c, s = ca.cos(angle), ca.sin(angle)
+    return ca.vertcat(ca.horzcat(1, 0, 0), ca.horzcat(0, c, -s), ca.horzcat(0, s, c))
+
+
+def _turn_y(angle: Any) -> Any:
+    c, s = ca.cos(angle), ca.sin(angle)
+    return ca.vertcat(ca.horzcat(c, 0, s), ca.horzcat(0, 1, 0), ca.horzcat(-s, 0, c))
+
+
+def _turn_z(angle: Any) -> Any:
+    c, s = ca.cos(angle), ca.sin(angle)
+    return ca.vertcat(ca.horzcat(c, -s, 0), ca.horzcat(s, c, 0), ca.horzcat(0, 0, 1))

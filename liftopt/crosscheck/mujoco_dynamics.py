@@ -1,0 +1,86 @@
+"""Inverse dynamics of the solved motion by MuJoCo: the torques, and the balance of the free object."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.crosscheck.mujoco_model import import_mujoco, joint_places, spec_of, states_of
+from liftopt.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class InverseDynamics:
+    """What MuJoCo finds where the solution says something too, at K times.
+
+    Attributes:
+        name: of the agent or object.
+        labels: (n,) joints, or rows of the balance.
+        ours, theirs: (K, n) torques with the grasp reaction applied, pinned joints included [Nm, N]; for the object the
+            wrench its motion needs less what the grasps give, force along world axes, moment about body axes.
+        scale: (n,) what an error is relative to: the largest torque of the joint, the object's weight and its weight
+            at half the span of the grasps.
+        gap: largest distance of the agent's grasp point from where the solution has it [m]; 0 for the object.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    ours: Array
+    theirs: Array
+    scale: Array
+    gap: float
+
+    @property
+    def relative(self) -> float:
+        """Largest error over its scale."""
+        return float((np.abs(self.ours - self.theirs).max(axis=0) / self.scale).max())
+
+    @property
+    def worst(self) -> str:
+        """The label of that error."""
+        return self.labels[int(np.argmax(np.abs(self.ours - self.theirs).max(axis=0) / self.scale))]
+
+
+def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
+    """Return MuJoCo's inverse dynamics of each agent and of the object at all times of a solution.
+
+    The grasp forces act as external forces at the grasp: on the object as they are, on an agent reversed, at the point
+    where MuJoCo's own kinematics has the grasp.
+
+    Raises:
+        InputError: MuJoCo is not installed.
+    """
+    mujoco = import_mujoco()
+    model = spec_of(solution).compile()
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    data, states, held = mujoco.MjData(model), states_of(model, solution), solution.held
+    bodies = [model.body(f"{agent.name}_grasp").id for agent in solution.agents]
+    edges = [model.body(f"grasp_{agent.name}").id for agent in solution.agents]
+    top = model.body(held.name).id
+    found, gaps = np.zeros_like(states.tau), np.zeros(len(solution.agents))
+    for k in range(len(solution.time)):
+        data.qpos[:], data.qvel[:], data.qacc[:] = states.qpos[k], states.qvel[k], states.qacc[k]
+        mujoco.mj_inverse(model, data)
+        external, none = np.zeros(model.nv), np.zeros(3)
+        for i, agent in enumerate(solution.agents):
+            force = agent.grasp_force[k]
+            mujoco.mj_applyFT(model, data, -force, none, data.xpos[bodies[i]], bodies[i], external)
+            mujoco.mj_applyFT(model, data, force, none, data.xpos[edges[i]], top, external)
+            gaps[i] = max(gaps[i], float(np.linalg.norm(data.xpos[bodies[i]] - agent.grasp_position[k])))
+        found[k] = data.qfrc_inverse - external
+    results = []
+    for gap, agent in zip(gaps, solution.agents, strict=True):
+        dofs = [dof for _, dof in joint_places(model, agent)]
+        scale = np.maximum(np.abs(agent.tau).max(axis=0), np.finfo(float).tiny)
+        results.append(InverseDynamics(agent.name, agent.joint_names, agent.tau, found[:, dofs], scale, float(gap)))
+    weight = float(model.body_mass[top] * 9.81)
+    span = np.linalg.norm(np.ptp(held.grasp_position[0], axis=0)) / 2
+    first = int(model.joint(f"{held.name}_free").dofadr[0])
+    labels = tuple(f"{kind} {axis}" for kind in ("force", "moment") for axis in "xyz")
+    scale = weight * np.array([1.0, 1.0, 1.0, span, span, span])
+    theirs = found[:, first : first + 6]
+    return (*results, InverseDynamics(held.name, labels, held.wrench, theirs, scale, 0.0))

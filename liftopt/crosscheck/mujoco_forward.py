@@ -1,0 +1,222 @@
+"""Forward simulation by MuJoCo with the solved torques: do they make the motion that they are said to make?
+
+The grasps are equality constraints between the grasp points (``connect``), so MuJoCo finds the grasp forces itself;
+contacts are off, the virtual joints are welded. Joints get the torques of the solution, between the knots too.
+
+Two point grasps cannot hold the object about the line through them: the optimal-control problem locks that turn and
+reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
+
+Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the default lift: the
+object's centre lies above the line of the grasps, and arms that push each other through points buckle at wrist and
+forearm, where there is little inertia. So a feedback holds joints and object to the solution, ``M (w^2 e + 2 w de/dt)``
+with the inertia matrix M of the moment; what it adds to the solved torques is reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.crosscheck.mujoco_model import States, import_mujoco, spec_of, states_of
+from liftopt.interpolation import refined
+from liftopt.solution import Solution
+
+Array = npt.NDArray[np.float64]
+TIME_STEP = 5e-4  # [s], at most
+SETTLING = 0.02  # time constant with which the constraints close a gap of the grasp points [s]
+HARDNESS = 0.9999  # of the constraints: the most MuJoCo allows, so its grasp forces are good to some 1e-3
+WINDOW = 0.05  # [s]
+LOST = 1.0  # [rad, m]: a simulation that is this far off is stopped
+# Of the feedback [rad/s]. Deviations grow as exp(49 t) at worst on the default lift and exp(114 t) on a lift with the
+# arm nearly straight, where humeral rotation meets hardly any inertia (eigenvalues of the linearised simulation).
+BANDWIDTH = 160.0
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far a simulation came off the solution, the largest over joints and times; infinite where it blew up.
+
+    Attributes:
+        joint: [rad].
+        position: of the object's centre [m].
+        turn: of the object [rad].
+    """
+
+    joint: float
+    position: float
+    turn: float
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Open loop in short windows, each started on the solution.
+
+    Attributes:
+        deviation: the largest over all windows.
+        force: largest difference of MuJoCo's grasp forces from the solution's at the start of a window, over the
+            largest grasp force.
+        count: number of windows.
+    """
+
+    deviation: Deviation
+    force: float
+    count: int
+
+
+@dataclass(frozen=True)
+class Followed:
+    """The whole lift with feedback.
+
+    Attributes:
+        deviation: from the solution.
+        joints: (n,) names of the moving joints.
+        torque: (n,) largest torque that the feedback added [Nm].
+        share: (n,) that over the joint's torque limit, the larger of its two.
+        moment: largest moment that the feedback added on the object about its x axis [Nm].
+    """
+
+    deviation: Deviation
+    joints: tuple[str, ...]
+    torque: Array
+    share: Array
+    moment: float
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """A solution in MuJoCo, ready to be simulated. Its methods raise InputError where MuJoCo is missing."""
+
+    solution: Solution
+
+    def windows(self, serve: bool = True) -> Windows:
+        """Simulate open loop in windows of ``WINDOW``; without ``serve`` the unserved moment is left out."""
+        steps = max(1, round(WINDOW / self._step))
+        starts = range(0, len(self._states.qpos) - 1, steps)
+        worst, force = np.zeros(3), 0.0
+        for first in starts:
+            force = max(force, self._start(first, serve))
+            for k in range(first, min(first + steps, len(self._states.qpos) - 1)):
+                worst = np.maximum(worst, self._advance(k, self._feedforward(k, serve)))
+                if np.isinf(worst).any():
+                    break
+        peak = max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in self._dense.agents)
+        return Windows(Deviation(*worst.tolist()), force / peak, len(starts))
+
+    def follow(self) -> Followed:
+        """Simulate the whole lift with feedback on all joints and on the object's turn about its grasps."""
+        added = np.zeros(self._model.nv)
+        worst = np.zeros(3)
+        self._start(0, True)
+        for k in range(len(self._states.qpos) - 1):
+            feedback = self._feedback(k)
+            added = np.maximum(added, np.abs(feedback))
+            worst = np.maximum(worst, self._advance(k, self._feedforward(k, True) + feedback))
+            if np.isinf(worst).any():
+                break
+        agents = self.solution.agents
+        limits = np.concatenate([np.maximum(-a.limits.tau_lower, a.limits.tau_upper) for a in agents])
+        names = [n for a in agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves]
+        torque = added[self._joints]
+        return Followed(Deviation(*worst.tolist()), tuple(names), torque, torque / limits, float(added[self._roll]))
+
+    @cached_property
+    def _dense(self) -> Solution:
+        interval = float(self.solution.time[1] - self.solution.time[0])
+        return refined(self.solution, int(np.ceil(interval / TIME_STEP - 1e-9)))
+
+    @property
+    def _step(self) -> float:
+        return float(self._dense.time[1])
+
+    @cached_property
+    def _model(self) -> Any:
+        mujoco = import_mujoco()
+        spec = spec_of(self.solution, [name for agent in self.solution.agents for name in _pinned(agent)])
+        for agent in self.solution.agents:
+            ends = (f"{agent.name}_grasp", f"grasp_{agent.name}")
+            for body in ends:
+                spec.body(body).add_site().name = f"{body}_site"
+            grasp = spec.add_equality()
+            grasp.type, grasp.objtype = mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtObj.mjOBJ_SITE
+            grasp.name1, grasp.name2 = (f"{body}_site" for body in ends)
+            grasp.solref, grasp.solimp = [SETTLING, 1.0], [HARDNESS, HARDNESS, 1e-3, 0.5, 2.0]
+        spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+        spec.option.timestep, spec.option.tolerance, spec.option.iterations = self._step, 1e-12, 200
+        return spec.compile()
+
+    @cached_property
+    def _data(self) -> Any:
+        return import_mujoco().MjData(self._model)
+
+    @cached_property
+    def _states(self) -> States:
+        return states_of(self._model, self._dense)
+
+    @cached_property
+    def _joints(self) -> list[int]:
+        return [
+            int(self._model.joint(name).dofadr[0])
+            for agent in self.solution.agents
+            for name, moves in zip(agent.joint_names, agent.moving, strict=True)
+            if moves
+        ]
+
+    @cached_property
+    def _body(self) -> int:
+        """First of the object's six places in qvel: linear, then angular in body axes."""
+        return int(self._model.joint(f"{self.solution.held.name}_free").dofadr[0])
+
+    @property
+    def _roll(self) -> int:
+        return self._body + 3
+
+    def _start(self, k: int, serve: bool) -> float:
+        """Put the simulation on the solution; return by how much its grasp forces differ there [N]."""
+        mujoco, data = import_mujoco(), self._data
+        mujoco.mj_resetData(self._model, data)
+        data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
+        data.qfrc_applied[:] = self._states.tau[k]
+        data.qfrc_applied[self._roll] = self._dense.held.wrench[k, 3] * serve
+        mujoco.mj_forward(self._model, data)
+        # A constraint's force acts on its first body along world axes: on the agent, from the object.
+        forces = -data.efc_force.reshape(len(self._dense.agents), 3)
+        wanted = np.array([agent.grasp_force[k] for agent in self._dense.agents])
+        return float(np.linalg.norm(forces - wanted, axis=1).max())
+
+    def _feedforward(self, k: int, serve: bool) -> Array:
+        """Return the solved torques, and the moment on the object if served, halfway through a step."""
+        force: Array = self._states.tau[k : k + 2].mean(axis=0)
+        force[self._roll] = self._dense.held.wrench[k : k + 2, 3].mean() * serve
+        return force
+
+    def _feedback(self, k: int) -> Array:
+        mujoco, model, data = import_mujoco(), self._model, self._data
+        acceleration = BANDWIDTH**2 * self._error(k) + 2 * BANDWIDTH * (self._states.qvel[k] - data.qvel)
+        held = np.isin(np.arange(model.nv), [*self._joints, self._roll])
+        force = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, force, acceleration * held)
+        return force * held
+
+    def _advance(self, k: int, force: Array) -> Array:
+        """Go from time ``k`` to the next; return the deviations there, those of ``Deviation``."""
+        self._data.qfrc_applied[:] = force
+        import_mujoco().mj_step(self._model, self._data)
+        error, at = self._error(k + 1), self._body
+        joints, position, turn = error[self._joints], error[at : at + 3], error[at + 3 : at + 6]
+        worst = np.array([np.abs(joints).max(), np.linalg.norm(position), np.linalg.norm(turn)])
+        # Stopped well before MuJoCo takes notice: it would start again at its own zero and write a log.
+        return worst if np.all(worst < LOST) else np.full(3, np.inf)
+
+    def _error(self, k: int) -> Array:
+        error = np.zeros(self._model.nv)
+        import_mujoco().mj_differentiatePos(self._model, error, 1.0, self._data.qpos, self._states.qpos[k])
+        return error
+
+
+def _pinned(agent: Any) -> Iterator[str]:
+    return (name for name, moves in zip(agent.joint_names, agent.moving, strict=True) if not moves)

@@ -1,0 +1,102 @@
+"""One lift to be timed: a problem on a mesh, and a start that is given, so that no search decides the path."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from benchmarks.scenarios import Ends
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.scenario import Scenario
+from liftopt.scene import agents_of, object_of, task_of
+from liftopt.verify import verify
+
+Array = npt.NDArray[np.float64]
+TOLERANCE = 1e-6
+PATIENCE = 60.0  # [s] for one solve
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A scenario as a nonlinear programme.
+
+    Attributes:
+        scenario: what is lifted.
+        spline, problem: on its mesh.
+        start: (n_x,) the unknowns to start from.
+    """
+
+    scenario: Scenario
+    spline: RestToRestSpline
+    problem: Problem
+    start: Array
+
+    @staticmethod
+    def of(scenario: Scenario, ends: Ends, intervals: int = 20) -> Case:
+        """Build the problem; the start joins two postures by the quintic of minimum jerk."""
+        spline = RestToRestSpline(intervals)
+        team = Team.of(agents_of(scenario), object_of(scenario), print)
+        problem = Problem(team, task_of(scenario), spline.mesh())
+        control, force = (
+            first + (last - first) * (10 * s**3 - 15 * s**4 + 6 * s**5)[:, None]
+            for first, last, s in (
+                (np.array(ends.first), np.array(ends.last), problem.mesh.control_phase),
+                (np.array(ends.first_force), np.array(ends.last_force), problem.mesh.phase),
+            )
+        )
+        return Case(scenario, spline, problem, problem.pack(control, force))
+
+    def solve(self, solver: Any, **more: Any) -> SolverResult:
+        """Solve from the start; ``more`` goes to the solver's ``solve``."""
+        result: SolverResult = solver.solve(self.start, deadline=time.monotonic() + PATIENCE, **more)
+        return result
+
+    def verified(self, result: SolverResult) -> bool:
+        """Whether a result converged and Pinocchio agrees."""
+        return result.converged and verify(self.problem, self.spline, result, TOLERANCE).passed
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Wall and processor times [s] of repeated calls."""
+
+    wall: tuple[float, ...]
+    cpu: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        """Median wall time [s]."""
+        return float(np.median(self.wall))
+
+    def plain(self) -> dict[str, float]:
+        """Return the figures to keep, in ms."""
+        return {
+            "median_ms": 1e3 * self.median,
+            "least_ms": 1e3 * min(self.wall),
+            "cpu_median_ms": 1e3 * float(np.median(self.cpu)),
+            "repeats": len(self.wall),
+        }
+
+
+def repeat(times: int, call: Callable[..., Any], *arguments: Any, **named: Any) -> tuple[Timing, Any]:
+    """Call once to warm up and then ``times`` times; return the times of these and the last answer."""
+    call(*arguments, **named)
+    return measure(times, call, *arguments, **named)
+
+
+def measure(times: int, call: Callable[..., Any], *arguments: Any, **named: Any) -> tuple[Timing, Any]:
+    """Call ``times`` times; return the times and the last answer."""
+    wall, cpu, answer = [], [], None
+    for _ in range(times):
+        began, busy = time.perf_counter(), time.process_time()
+        answer = call(*arguments, **named)
+        wall.append(time.perf_counter() - began)
+        cpu.append(time.process_time() - busy)
+    return Timing(tuple(wall), tuple(cpu)), answer

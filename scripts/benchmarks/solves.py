@@ -1,0 +1,155 @@
+"""Single solves of the default lift: cold from a given start, warm from a neighbouring optimum, on finer meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from benchmarks.case import Case, measure, repeat
+from benchmarks.goals import Row
+from benchmarks.scenarios import table5
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.ipopt import Ipopt
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.replan import Replanner
+from liftopt.scenario import Scenario, with_overrides
+from liftopt.scene import agents_of, object_of, task_of
+
+MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
+MIXES, MIXES_SEED = 100, 3
+MESHES = (10, 20, 40, 80, 160)
+SOLVERS: dict[str, Callable[[Problem], Any]] = {"ipopt": Ipopt, "banded": Banded}
+
+
+def cold(name: str, case: Case, repeats: int) -> Row:
+    """Time one solve from the given start."""
+    solver = SOLVERS[name](case.problem)
+    timing, result = repeat(repeats, case.solve, solver)
+    note = "" if case.verified(result) else f"not verified ({result.status})"
+    return Row(1e3 * timing.median, note, counts(case, solver, result), timing.plain() | spent(result))
+
+
+def warm_named(case: Case, repeats: int) -> Row:
+    """Time IPOPT's re-solve after each of the three changes and after all of them; the slowest counts."""
+    scenario = case.scenario
+    changes: dict[str, tuple[str, ...]] = {
+        "mass +10 %": (f"table.mass={scenario.table.mass * (1 + MASS)}",),
+        "final height +2 cm": (f"task.end.height={scenario.task.end.height + HEIGHT}",),
+        "subject +2 cm": (f"human.stature={scenario.human.stature + STATURE}",),
+    }
+    changes["all three"] = tuple(override for change in changes.values() for override in change)
+    solver = Ipopt(case.problem)
+    optimum = case.solve(solver)
+    details: dict[str, Any] = {}
+    iterations, failed = {}, []
+    for name, overrides in changes.items():
+        near = _changed(case, with_overrides(scenario, overrides), optimum)
+        timing, result = repeat(repeats, near.solve, solver, warm=optimum.multipliers, problem=near.problem)
+        details[name] = timing.plain() | spent(result)
+        iterations[name] = result.iterations
+        if not near.verified(result):
+            failed.append(f"{name} not verified ({result.status})")
+    slowest = max(details, key=lambda name: float(details[name]["median_ms"]))
+    note = "; ".join([f"slowest: {slowest}", *failed])
+    return Row(float(details[slowest]["median_ms"]), note, {"iterations": iterations}, details)
+
+
+def warm_mixes(case: Case, mixes: int) -> Row:
+    """Time the banded solver's re-solve after random mixes of the three changes, each up to its full size."""
+    solver = Banded(case.problem)
+    optimum = case.solve(solver)
+    replanner = Replanner()
+    replanner.solve(with_overrides(case.scenario, ["solver.name=banded", "solver.starts=1"]))
+    first = replanner.latest
+    took, whole, iterations, failed = [], [], [], 0
+    cpu: list[float] = []
+    for scenario in _mixes(case.scenario, mixes):
+        near = _changed(case, scenario, optimum)
+        timing, result = repeat(1, near.solve, solver, warm=optimum.multipliers, problem=near.problem)
+        took.append(1e3 * timing.median)
+        cpu += timing.cpu
+        iterations.append(result.iterations)
+        failed += not near.verified(result)
+        replanner.latest = first
+        whole.append(1e3 * measure(1, replanner.replan, with_overrides(scenario, ["solver.name=banded"]))[0].median)
+    p90 = float(np.percentile(took, 90))
+    in_all = float(np.percentile(whole, 90))
+    note = f"{failed} of {mixes} not verified; from a changed scenario, models included: p90 {in_all:.1f} ms"
+    counted = {"iterations_mean": float(np.mean(iterations)), "iterations_most": max(iterations), "failed": failed}
+    details = {
+        "median_ms": float(np.median(took)),
+        "most_ms": max(took),
+        "cpu_p90_ms": 1e3 * float(np.percentile(cpu, 90)),
+        "replan_median_ms": float(np.median(whole)),
+        "replan_p90_ms": in_all,
+    }
+    return Row(p90, note, counted, details)
+
+
+def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, ...] = ("banded", "ipopt")) -> Row:
+    """Time both solvers on ever finer meshes; the banded one's time an interval should stay the same."""
+    varied = table5()
+    details: dict[str, Any] = {"N": list(meshes)}
+    for name in solvers:
+        times, per, failed = [], [], []
+        for intervals in meshes:
+            case = Case.of(varied.scenario(), varied.ends, intervals)
+            solver = SOLVERS[name](case.problem)
+            timing, result = repeat(repeats, case.solve, solver)
+            times.append(1e3 * timing.median)
+            per.append(result.iterations)
+            failed += [] if result.converged else [intervals]
+        details[name] = {"ms": times, "iterations": per, "not_converged": failed}
+    found = details["banded"]
+    an_interval = np.array(found["ms"]) / np.array(meshes)
+    an_iteration = an_interval / np.array(found["iterations"])
+    ratio, clean = (float(values.max() / values.min()) for values in (an_interval, an_iteration))
+    note = f"{', '.join(f'{t:.0f}' for t in found['ms'])} ms; by iteration and interval max / min {clean:.2f}"
+    if found["not_converged"]:
+        note += f"; not converged at N = {found['not_converged']}"
+    return Row(ratio, note, {"iterations": {name: details[name]["iterations"] for name in solvers}}, details)
+
+
+def counts(case: Case, solver: Any, result: SolverResult) -> dict[str, Any]:
+    """Return what a solve took that depends on no machine."""
+    found: dict[str, Any] = {
+        "iterations": result.iterations,
+        "objective": result.objective,
+        "unknowns": case.problem.layout.n_x,
+        "rows": case.problem.constraints.linear.shape[0],
+        "jacobian_nonzeros": case.problem.nlp.jac_g.nnz_out(1),
+        "hessian_nonzeros": case.problem.nlp.hess_lag.nnz_out(0),
+    }
+    details = getattr(solver, "details", {})
+    found |= {key: details[key] for key in ("factorisations", "refinements", "evaluations") if key in details}
+    if hasattr(solver, "multiplications"):
+        found["multiplications_a_factorisation"] = solver.multiplications
+    return found
+
+
+def spent(result: SolverResult) -> dict[str, float]:
+    """Return where a solve's time went, as the solver has it [ms]."""
+    return {"solver_ms": 1e3 * result.seconds, "evaluation_ms": 1e3 * result.evaluation_seconds}
+
+
+def _changed(case: Case, scenario: Scenario, optimum: SolverResult) -> Case:
+    """Return the case of a changed scenario, to be solved from an optimum."""
+    team = Team.of(agents_of(scenario), object_of(scenario))
+    return Case(scenario, case.spline, Problem(team, task_of(scenario), case.problem.mesh), optimum.x)
+
+
+def _mixes(scenario: Scenario, count: int) -> list[Scenario]:
+    """Return scenarios with all three changed at random, either way, each by at most its full size."""
+    rng = np.random.default_rng(MIXES_SEED)
+    found = []
+    for share in rng.uniform(-1.0, 1.0, (count, 3)):
+        overrides = (
+            f"table.mass={scenario.table.mass * (1 + MASS * share[0]):.4f}",
+            f"task.end.height={scenario.task.end.height + HEIGHT * share[1]:.4f}",
+            f"human.stature={scenario.human.stature + STATURE * share[2]:.4f}",
+        )
+        found.append(with_overrides(scenario, overrides))
+    return found

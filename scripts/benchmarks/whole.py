@@ -1,0 +1,96 @@
+"""Whole lifts: in a process that is up, in a fresh one, and many starts on two processes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor
+from functools import cache
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.case import measure, repeat
+from benchmarks.goals import Row
+from benchmarks.scenarios import table5
+from liftopt.lift import lift
+from liftopt.solution import Solution
+from liftopt.workshop import Workshop
+
+MANY = 64
+
+
+def in_process(name: str, starts: int, repeats: int) -> Row:
+    """Time a lift, verified, in a process that has lifted before and keeps its solvers."""
+    scenario, workshop = table5().scenario(f"solver.name={name}", f"solver.starts={starts}"), Workshop()
+    timing, solution = repeat(repeats, lift, scenario, workshop=workshop)
+    alone, _ = measure(1, lift, scenario)
+    note = f"{name}; with nothing kept from the lift before: {1e3 * alone.median:.0f} ms"
+    details = timing.plain() | {f"{key}_ms": 1e3 * value for key, value in solution.seconds.items()}
+    return Row(1e3 * timing.median, _doubt(solution) + note, _counts(solution), details)
+
+
+def fresh_process(repeats: int, *overrides: str) -> tuple[Row, Row]:
+    """Time the command, from its call to its exit, and take the most memory that it held."""
+    times, cpu, memory, status = [], [], [], 0
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "liftopt", "solve", "table5", "--out", str(Path(folder) / "result")]
+        command += [word for override in overrides for word in ("--set", override)]
+        for _ in range(repeats):
+            began = time.perf_counter()
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            times.append(1e3 * (time.perf_counter() - began))
+            cpu.append(1e3 * (usage.ru_utime + usage.ru_stime))
+            memory.append(usage.ru_maxrss / 1e3)  # Linux gives kilobytes
+    note = " ".join(["liftopt solve table5", *(f"--set {override}" for override in overrides)])
+    if status:
+        note = f"exit status {os.waitstatus_to_exitcode(status)}; {note}"
+    details = {"cpu_median_ms": float(np.median(cpu)), "least_ms": min(times), "repeats": repeats}
+    return Row(float(np.median(times)), note, {}, details), Row(max(memory), note, {}, {"MB": memory})
+
+
+def many_starts(repeats: int) -> Row:
+    """Time 64 starts, half in each of two processes that are up and have lifted before; the best is kept."""
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        list(pool.map(_half, (0, 1), (1, 1)))
+
+        def both() -> list[float]:
+            return list(pool.map(_half, (0, 1), (MANY // 2, MANY // 2)))
+
+        timing, objectives = measure(repeats, both)
+    kept = {"objective": min(objectives)}
+    # Of the processor's time only that of this process is known, which waits.
+    details = {key: value for key, value in timing.plain().items() if not key.startswith("cpu")}
+    return Row(1e3 * timing.median, "banded; each process searches and solves half of them", kept, details)
+
+
+@cache
+def _workshop() -> Workshop:
+    """Return what this worker keeps from lift to lift."""
+    return Workshop()
+
+
+def _half(seed: int, starts: int) -> float:
+    """Return the objective of the best of some starts; in a worker."""
+    scenario = table5().scenario("solver.name=banded", f"solver.starts={starts}", f"solver.seed={seed}")
+    solution = lift(scenario, workshop=_workshop())
+    return solution.objective if solution.solved else float("inf")
+
+
+def _counts(solution: Solution) -> dict[str, object]:
+    return {
+        "objective": solution.objective,
+        "starts": len(solution.starts),
+        "converged": sum(start.status.startswith("converged") for start in solution.starts),
+        "iterations": sum(start.iterations for start in solution.starts),
+    }
+
+
+def _doubt(solution: Solution) -> str:
+    return "" if solution.solved else f"{solution.status}; "

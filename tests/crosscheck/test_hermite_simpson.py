@@ -1,0 +1,113 @@
+"""The second transcription. Oracles: Pinocchio in double precision, closed-form motions, the spline collocation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.crosscheck.hermite_simpson import HermiteSimpson
+from liftopt.crosscheck.instant import instant
+from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
+from liftopt.interpolation import refined
+from liftopt.scene import agents_of, object_of, task_of
+from liftopt.trajectory import agent_trajectory, object_trajectory
+
+CHEAP = ("solver.intervals=10", "solver.starts=1")
+STATES = 5
+
+
+@pytest.fixture(scope="module")
+def solution(solved: Callable[..., Any]) -> Any:
+    return solved("table5", *CHEAP).solution
+
+
+@pytest.fixture(scope="module")
+def models(solution: Any) -> tuple[Any, ...]:
+    scenario = solution.scenario
+    return agents_of(scenario), object_of(scenario), task_of(scenario)
+
+
+@pytest.fixture(scope="module")
+def study(solution: Any) -> MeshStudy:
+    return mesh_study(solution, (6, 12))
+
+
+def test_equations_are_those_of_pinocchio_in_double_precision(models):
+    agents, held, task = models
+    written, rng = instant(agents, held, task), np.random.default_rng(4)
+    at = written.coordinates
+    assert (at.n_q, at.n_joints, list(at.unlocked)) == (22, 17, [0, 1, 2, 4, 5])
+    q, v, a = rng.uniform(-1.0, 1.0, (3, STATES, at.n_q))
+    force = rng.uniform(-50.0, 50.0, (STATES, at.n_force))
+    pose, rate, second = np.zeros((3, STATES, 6))
+    for six, part in ((pose, q), (rate, v), (second, a)):
+        six[:, at.unlocked] = part[:, at.n_joints :]
+    table = object_trajectory(held, pose, rate, second, force)
+    tau, first = np.zeros((STATES, at.n_joints)), 0
+    for i, agent in enumerate(agents):
+        own = slice(first, first + at.joints[i])
+        arm = agent_trajectory(agent, q[:, own], v[:, own], a[:, own], force[:, 3 * i : 3 * i + 3])
+        tau[:, own], first = arm.tau[:, arm.moving], own.stop
+        gap = np.asarray(written.closure(q.T))[3 * i : 3 * i + 3].T
+        np.testing.assert_allclose(gap, arm.grasp_position - table.grasp_position[:, i], atol=1e-12)
+    y = np.hstack([q, v, a, force, tau]).T
+    np.testing.assert_allclose(np.asarray(written.dynamics(y)), 0.0, atol=1e-10)
+    np.testing.assert_allclose(np.asarray(written.balance(y)).T, table.wrench, atol=1e-10)
+
+
+def test_defects_vanish_on_motions_of_third_order_and_no_higher(models):
+    # Oracle: closed form. Acceleration linear in time is what the middles interpolate exactly; t^4 is beyond them.
+    transcription = HermiteSimpson(*models, 4)
+    t = np.linspace(0.0, transcription.task.duration, transcription.n_points)[None]
+
+    def defects(order: int) -> list[float]:
+        q, v, a = t**order, order * t ** (order - 1), order * (order - 1) * t ** (order - 2)
+        return [float(np.abs(defect).max()) for defect in transcription.defects(q, v, a)]
+
+    assert max(defects(3)) < 1e-12
+    middle_q, end_q, _, end_v = defects(4)
+    assert middle_q > 1e-3
+    assert max(end_q, end_v) < 1e-12
+
+
+def test_both_optima_approach_each_other_and_the_limit_from_above(study):
+    # Measured: 39 % and 17 % apart; the limit is that of the problem without its ramps over one interval.
+    coarse, fine = study.rows
+    assert study.approaching
+    assert abs(fine.difference) < 0.2
+    assert study.limit < fine.hermite_simpson < coarse.hermite_simpson
+    assert fine.hermite_simpson < fine.spline < coarse.spline
+    for row in study.rows:
+        assert row.converged
+
+
+def test_extrapolated_to_no_step_both_are_at_the_limit(study):
+    # The error is of first order in the step: what a halved step gains is what is left.
+    coarse, fine = study.rows
+    assert 2 * fine.hermite_simpson - coarse.hermite_simpson == pytest.approx(study.limit, rel=0.01)
+    assert 2 * fine.spline - coarse.spline == pytest.approx(study.limit, rel=0.12)
+
+
+def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models, solution):
+    agents, held, task = models
+    transcription = HermiteSimpson(agents, held, task, 6)
+    found = transcription.solve(points_of(refined(solution, 3), transcription.at).every(5))
+    assert found.converged
+    assert found.violation < 1e-6
+    arms = found.points
+    first = transcription.at.joints[0]
+    human = agent_trajectory(agents[0], arms.q[:, :first], arms.v[:, :first], arms.a[:, :first], arms.force[:, :3])
+    np.testing.assert_allclose(human.tau[:, human.moving], arms.tau[:, :first], atol=1e-5)
+    assert np.all(arms.v[[0, -1]] == 0.0)
+    assert np.all(arms.a[[0, -1]] == 0.0)
+
+
+def test_verdict_needs_every_mesh_to_bring_the_optima_together():
+    rows = [MeshRow(n, 1.0 + d, 1.0, 0.0, (0.0, 0.0), True) for n, d in ((10, 0.2), (20, 0.1), (40, 0.09))]
+    assert MeshStudy(tuple(rows[:2]), 1.0).approaching
+    stuck = MeshStudy(tuple(rows), 1.0)
+    assert not stuck.approaching
+    assert "NOT" in render(stuck)

@@ -1,0 +1,64 @@
+"""The solved torques in MuJoCo's forward dynamics: they must make the solved motion. Oracle: MuJoCo's simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.crosscheck.mujoco_forward import Simulation, Windows
+
+CHEAP = ("solver.intervals=10", "solver.starts=1")
+
+
+@pytest.fixture(scope="module")
+def solution(solved: Callable[..., Any]) -> Any:
+    pytest.importorskip("mujoco", minversion="3.7", reason="mujoco is in the extra 'crosscheck'")
+    return solved("table5", *CHEAP).solution
+
+
+@pytest.fixture(scope="module")
+def simulation(solution: Any) -> Simulation:
+    return Simulation(solution)
+
+
+@pytest.fixture(scope="module")
+def windows(simulation: Simulation) -> Windows:
+    return simulation.windows()
+
+
+def test_open_loop_follows_the_motion_for_50_ms_from_everywhere(windows):
+    assert windows.count == 40
+    assert windows.deviation.joint < 5e-3
+    assert windows.deviation.position < 3e-4
+    assert windows.deviation.turn < 2e-3
+    assert windows.force < 0.04
+
+
+def test_the_moment_that_nobody_serves_turns_the_object_when_it_is_left_out(simulation, windows, solution):
+    # Oracle: that moment at its largest for 50 ms on the table's inertia about the line of its grasps.
+    turned = simulation.windows(serve=False).deviation.turn
+    moment = np.abs(solution.held.wrench[:, 3]).max()
+    table = solution.scenario.table
+    inertia = table.mass * ((table.width**2 + table.height**2) / 12 + (table.height / 2) ** 2)
+    assert windows.deviation.turn < turned < 1.5 * moment / inertia * 0.05**2 / 2
+
+
+def test_the_whole_lift_is_followed_with_little_feedback(simulation):
+    whole = simulation.follow()
+    assert whole.deviation.joint < 4e-3
+    assert whole.deviation.position < 5e-4
+    assert whole.share.max() < 0.06
+    assert whole.moment < 0.01
+    assert len(whole.joints) == len(whole.torque) == 17
+
+
+def test_torques_for_another_grasp_force_do_not_make_the_motion(solution, windows):
+    human, robot = solution.agents
+    wrong = replace(solution, agents=(human, replace(robot, grasp_force=1.1 * robot.grasp_force)))
+    found = Simulation(wrong).windows()
+    assert found.force > 2 * windows.force
+    assert found.deviation.position > 2 * windows.deviation.position
