@@ -12,11 +12,12 @@ import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
 from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario import Scenario
 from liftopt.scene import agents_of, object_of, task_of
 from liftopt.verify import verify
+from liftopt.workshop import Workshop
 
 Array = npt.NDArray[np.float64]
 TOLERANCE = 1e-6
@@ -52,6 +53,10 @@ class Case:
             )
         )
         return Case(scenario, spline, problem, problem.pack(control, force))
+
+    def solver(self, name: str) -> Solver:
+        """Return a new solver for the problem, set up as ``liftopt solve`` does."""
+        return Workshop().solver(self.problem, self.scenario, name)
 
     def solve(self, solver: Any, **more: Any) -> SolverResult:
         """Solve from the start; ``more`` goes to the solver's ``solve``."""

@@ -6,6 +6,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,8 @@ from benchmarks.case import Case, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import table5
 from benchmarks.solves import counts, spent
+from liftopt.collocation import libraries
 from liftopt.collocation.motion import motion_at
-from liftopt.collocation.solvers.banded import Banded
-from liftopt.collocation.solvers.ipopt import Ipopt
 
 BATCH = 50
 
@@ -28,7 +28,7 @@ def virtual_machine(repeats: int) -> Row:
     varied = table5()
     with _no_compiler():
         case = Case.of(varied.scenario(), varied.ends)
-        solver = Ipopt(case.problem)
+        solver = case.solver("ipopt")
         timing, result = repeat(repeats, case.solve, solver)
     note = "IPOPT, kernels in CasADi's virtual machine" + ("" if case.verified(result) else f"; {result.status}")
     return Row(1e3 * timing.median, note, counts(case, solver, result), timing.plain() | spent(result))
@@ -40,7 +40,7 @@ def through_snopt(case: Case, seconds: float) -> Row:
         run = snopt.solve(case.problem, case.start, seconds)
     except ImportError as error:
         return Row(None, f"skipped: Drake is not installed ({error}); pip install drake")
-    ours = case.solve(Banded(case.problem)).objective
+    ours = case.solve(case.solver("banded")).objective
     note = (
         f"{'converged' if run.converged else 'not converged'}, {run.status}; evaluation "
         f"{1e3 * run.evaluation:.0f} ms at {run.points} points, handing over {1e3 * run.handing_over:.0f} ms; "
@@ -57,7 +57,7 @@ def through_snopt(case: Case, seconds: float) -> Row:
 
 def floor(case: Case, repeats: int) -> Row:
     """Time Pinocchio's derivatives of the inverse dynamics of every agent at all knots, and what calls cost."""
-    solver = Banded(case.problem)
+    solver = case.solver("banded")
     result = case.solve(solver)
     motion = motion_at(case.problem, case.spline, result.x, case.spline.phase)
     jobs: list[tuple[Any, Any, list[tuple[Any, ...]]]] = []
@@ -98,13 +98,16 @@ def floor(case: Case, repeats: int) -> Row:
 
 @contextmanager
 def _no_compiler() -> Iterator[None]:
-    """Let nothing be compiled or found in the cache."""
+    """Let nothing be compiled, or found in the cache or the package."""
     kept = {name: os.environ.get(name) for name in ("CC", "LIFTOPT_CACHE")}
+    package = libraries.PACKAGE
     with tempfile.TemporaryDirectory() as folder:
         os.environ.update(CC="", LIFTOPT_CACHE=folder)
+        libraries.PACKAGE = Path(folder)
         try:
             yield
         finally:
+            libraries.PACKAGE = package
             for name, value in kept.items():
                 if value is None:
                     del os.environ[name]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,6 @@ from benchmarks.case import Case, measure, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import table5
 from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.solvers.banded import Banded
-from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.replan import Replanner
 from liftopt.scenario import Scenario, with_overrides
@@ -21,12 +18,11 @@ from liftopt.scene import agents_of, object_of, task_of
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
 MIXES, MIXES_SEED = 100, 3
 MESHES = (10, 20, 40, 80, 160)
-SOLVERS: dict[str, Callable[[Problem], Any]] = {"ipopt": Ipopt, "banded": Banded}
 
 
 def cold(name: str, case: Case, repeats: int) -> Row:
     """Time one solve from the given start."""
-    solver = SOLVERS[name](case.problem)
+    solver = case.solver(name)
     timing, result = repeat(repeats, case.solve, solver)
     note = "" if case.verified(result) else f"not verified ({result.status})"
     return Row(1e3 * timing.median, note, counts(case, solver, result), timing.plain() | spent(result))
@@ -41,7 +37,7 @@ def warm_named(case: Case, repeats: int) -> Row:
         "subject +2 cm": (f"human.stature={scenario.human.stature + STATURE}",),
     }
     changes["all three"] = tuple(override for change in changes.values() for override in change)
-    solver = Ipopt(case.problem)
+    solver = case.solver("ipopt")
     optimum = case.solve(solver)
     details: dict[str, Any] = {}
     iterations, failed = {}, []
@@ -59,7 +55,7 @@ def warm_named(case: Case, repeats: int) -> Row:
 
 def warm_mixes(case: Case, mixes: int) -> Row:
     """Time the banded solver's re-solve after random mixes of the three changes, each up to its full size."""
-    solver = Banded(case.problem)
+    solver = case.solver("banded")
     optimum = case.solve(solver)
     replanner = Replanner()
     replanner.solve(with_overrides(case.scenario, ["solver.name=banded", "solver.starts=1"]))
@@ -97,7 +93,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
         times, per, failed = [], [], []
         for intervals in meshes:
             case = Case.of(varied.scenario(), varied.ends, intervals)
-            solver = SOLVERS[name](case.problem)
+            solver = case.solver(name)
             timing, result = repeat(repeats, case.solve, solver)
             times.append(1e3 * timing.median)
             per.append(result.iterations)

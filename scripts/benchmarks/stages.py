@@ -14,7 +14,6 @@ import casadi as ca
 import numpy as np
 
 from benchmarks.case import PATIENCE, TOLERANCE, Case, measure, repeat
-from benchmarks.solves import SOLVERS
 from liftopt import result_writer
 from liftopt.collocation.guess import posture_starts
 from liftopt.collocation.problem import Problem, Team
@@ -25,14 +24,15 @@ from liftopt.verify import verify
 
 MODULES = ("numpy", "scipy.sparse", "casadi", "pinocchio", "liftopt.cli", "liftopt.lift", "liftopt.result_writer")
 SLOW = 3  # repeats of what takes long
+SOLVERS = ("ipopt", "banded")
 
 
 def profile(case: Case, repeats: int) -> dict[str, dict[str, float]]:
     """Return milliseconds by stage, for the whole and for each solver."""
     found = {"import, fresh process": _imports(), "a lift": _stages(case, repeats)}
     found["one call of a function of the problem"] = _functions(case, repeats)
-    for name, build in SOLVERS.items():
-        solver = build(case.problem)
+    for name in SOLVERS:
+        solver = case.solver(name)
         case.solve(solver)
         began = time.perf_counter()
         result = case.solve(solver)
@@ -58,8 +58,8 @@ def _stages(case: Case, repeats: int) -> dict[str, float]:
         "of which rows": rows.median,
         "search for 3 starts": starts.median,
     }
-    for name, build in SOLVERS.items():
-        setup, solver = repeat(repeats, build, case.problem)
+    for name in SOLVERS:
+        setup, solver = repeat(repeats, case.solver, name)
         first, result = measure(1, case.solve, solver)
         found[f"{name} set up"], found[f"{name}, its first solve"] = setup.median, first.median
     checked, _ = repeat(repeats, verify, case.problem, spline, result, TOLERANCE)

@@ -9,8 +9,6 @@ import numpy as np
 from benchmarks.case import Case
 from benchmarks.goals import Row
 from benchmarks.scenarios import PATIENT, STARTS, varied_scenarios
-from liftopt.collocation.solvers.banded import Banded
-from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.lift import lift
 from liftopt.workshop import Workshop
 
@@ -24,14 +22,14 @@ def first_try(count: int | None = None) -> tuple[Row, Row]:
     kept = varied_scenarios()[:count]
     for varied in kept:
         case = Case.of(varied.scenario(), varied.ends)
-        result = case.solve(Banded(case.problem))
+        result = case.solve(case.solver("banded"))
         took.append(1e3 * result.seconds)
         iterations.append(result.iterations)
         good = case.verified(result)
         first += good
         if not good:
             statuses.append({"overrides": varied.overrides, "status": result.status})
-            good = case.verified(case.solve(Ipopt(case.problem)))
+            good = case.verified(case.solve(case.solver("ipopt")))
         in_the_end += good
     counts = {"iterations": iterations, "first_try": first, "fallback": in_the_end, "of": len(kept)}
     details: dict[str, Any] = {"ms": took, "failed": statuses}
