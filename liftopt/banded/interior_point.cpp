@@ -106,7 +106,7 @@ void InteriorPoint::differentiate() {
   nlp_.differentiate(now_.x.data(), lambda_.data(), options_.objective_scaling);
   evaluation_seconds_ += seconds_now() - began;
   lagrangian_ = nlp_.gradient;
-  nlp_.jacobian.multiply_transposed(lambda_.data(), lagrangian_.data());
+  nlp_.multiply_jacobian_transposed(lambda_.data(), lagrangian_.data());
   residuals();
 }
 
@@ -118,7 +118,7 @@ void InteriorPoint::residuals() {
 void InteriorPoint::solve_newton(const Vector& residual) {
   std::fill(right_.begin(), right_.end(), 0.0);
   for (int i = 0; i < s_.size(); ++i) rows_[i] = equality_[i] ? 0.0 : sigma_s_[i] * residual[i] + centre_[i];
-  nlp_.jacobian.multiply_transposed(rows_.data(), right_.data());
+  nlp_.multiply_jacobian_transposed(rows_.data(), right_.data());
   for (int i = 0; i < x_.size(); ++i) right_[i] += lagrangian_[i];
   x_.add_barrier_gradient(mu_, right_.data());
   for (double& entry : right_) entry = -entry;

@@ -68,6 +68,7 @@ class Banded:
         self._kernels = wide_kernels(problem, say)
         if self._kernels:
             self._nlp = kernel_nlp(_liftopt_banded, problem, self._kernels)
+            self._set_parameters(problem)
         else:
             self._nlp = callback_nlp(_liftopt_banded, problem.nlp, self._parameters)
         self._solver = _liftopt_banded.InteriorPoint(self._nlp, elimination_order(problem))
@@ -125,6 +126,12 @@ class Banded:
 
 
 def elimination_order(problem: Problem) -> list[list[int]]:
-    """Return blocks of unknowns: the grasp forces of each knot, then the control points in time."""
-    layout = problem.layout
-    return [row.tolist() for row in layout.force] + [row.tolist() for row in layout.control]
+    """Return blocks of unknowns in time: each control point after the grasp forces of the knots it acts at."""
+    layout, blocks, knot = problem.layout, [], 0
+    acts = np.any(np.stack(problem.mesh.basis) != 0.0, axis=0)
+    for i, control in enumerate(layout.control):
+        last = int(np.flatnonzero(acts[:, i]).max(initial=-1))
+        blocks += [force.tolist() for force in layout.force[knot : last + 1]]
+        knot = max(knot, last + 1)
+        blocks.append(control.tolist())
+    return blocks + [force.tolist() for force in layout.force[knot:]]
