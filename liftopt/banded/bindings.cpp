@@ -146,23 +146,27 @@ PYBIND11_MODULE(_liftopt_banded, module) {
       },
       "Variants of the dense operations that this processor can run, the one used by default first.");
   module.def("choose_instructions", &banded::choose_operations, "Choose the variant of solvers made from now on.");
-  py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp");
+  py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp")
+      .def(
+          "evaluate",
+          [](banded::Nlp& nlp, const Doubles& x) {
+            if (x.size() != nlp.unknowns()) throw std::length_error("an array does not have the problem's size");
+            Vector g(nlp.rows());
+            double f = 0.0;
+            {
+              py::gil_scoped_release free;
+              f = nlp.evaluate(x.data(), g.data());
+            }
+            return py::make_tuple(f, Doubles(static_cast<py::ssize_t>(g.size()), g.data()));
+          },
+          py::arg("x"), "Objective and constraint rows at x.");
   py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
       .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("weights"), py::arg("basis"),
            py::arg("control"), py::arg("force"), py::arg("parts"), py::arg("rows"), py::arg("linear"))
       .def("set_parameters", [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,
                                 const Doubles& y_weight) {
         nlp.set_parameters(part, vector_of(parameters), vector_of(c_weight), vector_of(y_weight));
-      })
-      .def(
-          "evaluate",
-          [](banded::KernelNlp& nlp, const Doubles& x) {
-            if (x.size() != nlp.unknowns()) throw std::length_error("an array does not have the problem's size");
-            Vector g(nlp.rows());
-            const double f = nlp.evaluate(x.data(), g.data());
-            return py::make_tuple(f, Doubles(static_cast<py::ssize_t>(g.size()), g.data()));
-          },
-          "Objective and constraint rows at x.");
+      });
   py::class_<banded::CallbackNlp, banded::Nlp, std::shared_ptr<banded::CallbackNlp>>(module, "CallbackNlp")
       .def(py::init([](py::function evaluate, py::function differentiate, const SparseArrays& jacobian,
                        const SparseArrays& hessian) {
