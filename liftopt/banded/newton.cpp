@@ -9,9 +9,10 @@ namespace banded {
 namespace {
 
 constexpr double kPenalty = 1e6;
-// delta_w of Waechter and Biegler (2006), section 3.1 and table 3.
+// delta_w of Waechter and Biegler (2006), section 3.1 and table 3. It decays faster than theirs: an attempt that fails
+// costs a fraction of an iteration, and steps that are held back need more iterations.
 constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;
-constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 1.0 / 3.0;
+constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 0.1;
 constexpr int kMostRefinements = 5;
 // Residuals of the linear system at which refinement stops, relative to the right-hand side.
 constexpr double kDualResidual = 1e-9, kPrimalResidual = 1e-2;
