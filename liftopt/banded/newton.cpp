@@ -13,6 +13,7 @@ constexpr double kPenalty = 1e6;
 // costs a fraction of an iteration, and steps that are held back need more iterations.
 constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;
 constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 0.1;
+constexpr double kWorthSkipping = 0.1;
 constexpr int kMostRefinements = 5;
 // Residuals of the linear system at which refinement stops, relative to the right-hand side.
 constexpr double kDualResidual = 1e-9, kPrimalResidual = 1e-2;
@@ -57,13 +58,16 @@ bool Newton::factorise(const double* sigma_x, const double* sigma_s, double leas
   const double began = seconds_now();
   condensed_.assemble(row_weight_.data(), sigma_x);
   assembly_seconds += seconds_now() - began;
-  delta_ = least_delta;
+  // Where the last matrix needed a large delta, none at all would hardly do now.
+  const bool likely = delta_ > 0.0 && kDecay * delta_ > kWorthSkipping && least_delta == 0.0;
+  delta_ = likely ? kDecay * delta_ : least_delta;
   if (try_delta()) {
     if (delta_ > 0.0) last_delta_ = delta_;
     return true;
   }
   const bool first = last_delta_ == 0.0;
-  delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
+  if (likely) delta_ *= kGrowth;
+  else delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
   while (!try_delta()) {
     delta_ *= first ? kFirstGrowth : kGrowth;
     if (!(delta_ < kLargestDelta)) return false;

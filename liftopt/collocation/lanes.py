@@ -24,12 +24,13 @@ from liftopt.collocation.kernels import Builder, Say, cache_folder, find_compile
 SYMBOLS = ("wide_value", "wide_derivatives", "wide_lanes")
 # Scheduling takes most of the compiler's time and spills what it moves; -O1 evaluates half as fast.
 FLAGS = ("-O2", "-fno-schedule-insns", "-fno-schedule-insns2", "-march=native", "-fPIC", "-shared", "-fno-math-errno")
-# What generated code may call beside arithmetic; a function that is missing here would not compile.
+# What generated code may call beside arithmetic; a function that is missing here would not compile. The conditions on
+# LANES are those that lane_operations.cpp tests at run time.
 PRELUDE = """\
 #include <math.h>
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define LANES 8
-#elif defined(__AVX__)
+#elif defined(__AVX2__) && defined(__FMA__)
 #define LANES 4
 #else
 #define LANES 2
