@@ -3,14 +3,13 @@
 A filter line-search interior point after Waechter and Biegler (2006), written in C++ in ``liftopt/banded`` (the
 algorithm, its sources and where it departs from them stand in ``interior_point.hpp`` and ``newton.hpp``): inequality
 rows are condensed into the matrix of the unknowns, equality rows enter by a penalty with refinement, and a block
-Cholesky factorises the result, grasp forces first (they touch one knot each), then the control points in time. That
-the factorisation succeeds is the test of inertia. It has no restoration phase: from a start that is too far away it
+Cholesky factorises the result in time, each control point after the grasp forces of the knots it acts at. That the
+factorisation succeeds is the test of inertia. It has no restoration phase: from a start that is too far away it
 may give up where IPOPT goes on, and says so. Derivatives stay at the knots (``knot_assembly.hpp``): a product with the
 Jacobian or the Hessian interpolates to the knots and back, and the condensed matrix is summed in two stages.
 
-What exists was tried
-on a prototype of this problem and does not serve: FATROP took 27 ms a search direction and did not converge, IPOPT
-with SPRAL 47 ms an iteration, and one quadratic programme by PIQP 43 ms, by OSQP 295 ms.
+What exists was tried on a prototype of this problem and does not serve: FATROP took 27 ms a search direction and did
+not converge, IPOPT with SPRAL 47 ms an iteration, and one quadratic programme by PIQP 43 ms, by OSQP 295 ms.
 """
 
 from __future__ import annotations
