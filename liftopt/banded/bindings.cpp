@@ -44,28 +44,44 @@ banded::KernelPart part_of(const py::dict& given) {
   banded::KernelPart part;
   part.value = reinterpret_cast<banded::Kernel>(given["value"].cast<std::uintptr_t>());
   part.derivatives = reinterpret_cast<banded::Kernel>(given["derivatives"].cast<std::uintptr_t>());
-  part.n_y = given["n_y"].cast<int>();
+  part.columns = {given["first"].cast<int>(), given["coordinates"].cast<int>(),
+                  integers_of(given["forces"].cast<Integers>())};
   part.n_c = given["n_c"].cast<int>();
   part.n_p = given["n_p"].cast<int>();
-  part.jacobian_nonzeros = given["jacobian_nonzeros"].cast<int>();
-  part.curvature_nonzeros = given["curvature_nonzeros"].cast<int>();
-  part.select = sparse_of(given["select"].cast<SparseArrays>());
-  part.squared_rows = integers_of(given["squared_rows"].cast<Integers>());
-  part.squared_factors = vector_of(given["squared_factors"].cast<Doubles>());
+  part.n_squared = given["n_squared"].cast<int>();
+  const auto pattern = [&](const char* name, std::vector<int>& rows, std::vector<int>& columns, int n_rows) {
+    const auto [r, c] = given[name].cast<std::tuple<Integers, Integers>>();
+    rows = integers_of(r);
+    columns = integers_of(c);
+    bool whole = rows.size() == columns.size();
+    for (int row : rows) whole = whole && row >= 0 && row < n_rows;
+    for (int column : columns) whole = whole && column >= 0 && column < part.columns.size();
+    if (!whole) throw std::invalid_argument("a nonzero of a kernel is out of range");
+  };
+  pattern("jacobian", part.jacobian_row, part.jacobian_column, part.n_c);
+  pattern("curvature", part.curvature_row, part.curvature_column, part.columns.size());
   return part;
 }
 
-std::unique_ptr<banded::KernelNlp> kernel_nlp(int lanes, const std::vector<py::dict>& parts, const Doubles& weights,
-                                              const SparseArrays& combine, const SparseArrays& linear,
-                                              const SparseArrays& jacobian, const SparseArrays& jacobian_scatter,
-                                              const Doubles& jacobian_offset, const SparseArrays& hessian,
-                                              const SparseArrays& hessian_scatter, const Doubles& hessian_offset) {
+banded::KnotRow row_of(const std::tuple<std::vector<std::tuple<int, int, double>>, Integers>& given) {
+  banded::KnotRow row;
+  for (const auto& [part, output, factor] : std::get<0>(given)) row.terms.push_back({part, output, factor});
+  row.row = integers_of(std::get<1>(given));
+  return row;
+}
+
+std::shared_ptr<banded::KernelNlp> kernel_nlp(
+    int lanes, const Doubles& weights, const Doubles& basis, const Integers& control, const Integers& force,
+    const std::vector<py::dict>& parts,
+    const std::vector<std::tuple<std::vector<std::tuple<int, int, double>>, Integers>>& rows,
+    const SparseArrays& linear) {
   std::vector<banded::KernelPart> all;
   for (const py::dict& part : parts) all.push_back(part_of(part));
-  return std::make_unique<banded::KernelNlp>(
-      lanes, std::move(all), vector_of(weights), sparse_of(combine), sparse_of(linear), sparse_of(jacobian),
-      banded::Scatter{banded::Sliced(sparse_of(jacobian_scatter)), vector_of(jacobian_offset)}, sparse_of(hessian),
-      banded::Scatter{banded::Sliced(sparse_of(hessian_scatter)), vector_of(hessian_offset)});
+  std::vector<banded::KnotRow> knot_rows;
+  for (const auto& row : rows) knot_rows.push_back(row_of(row));
+  banded::Knots knots(lanes, vector_of(weights), vector_of(basis), integers_of(control), integers_of(force));
+  return std::make_shared<banded::KernelNlp>(std::move(knots), std::move(all), std::move(knot_rows),
+                                             sparse_of(linear));
 }
 
 const char* name_of(banded::Status status) {
@@ -130,11 +146,23 @@ PYBIND11_MODULE(_liftopt_banded, module) {
       },
       "Variants of the dense operations that this processor can run, the one used by default first.");
   module.def("choose_instructions", &banded::choose_operations, "Choose the variant of solvers made from now on.");
-  py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp");
+  py::class_<banded::Nlp, std::shared_ptr<banded::Nlp>>(module, "Nlp")
+      .def(
+          "evaluate",
+          [](banded::Nlp& nlp, const Doubles& x) {
+            if (x.size() != nlp.unknowns()) throw std::length_error("an array does not have the problem's size");
+            Vector g(nlp.rows());
+            double f = 0.0;
+            {
+              py::gil_scoped_release free;
+              f = nlp.evaluate(x.data(), g.data());
+            }
+            return py::make_tuple(f, Doubles(static_cast<py::ssize_t>(g.size()), g.data()));
+          },
+          py::arg("x"), "Objective and constraint rows at x.");
   py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
-      .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("parts"), py::arg("weights"), py::arg("combine"),
-           py::arg("linear"), py::arg("jacobian"), py::arg("jacobian_scatter"), py::arg("jacobian_offset"),
-           py::arg("hessian"), py::arg("hessian_scatter"), py::arg("hessian_offset"))
+      .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("weights"), py::arg("basis"),
+           py::arg("control"), py::arg("force"), py::arg("parts"), py::arg("rows"), py::arg("linear"))
       .def("set_parameters", [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,
                                 const Doubles& y_weight) {
         nlp.set_parameters(part, vector_of(parameters), vector_of(c_weight), vector_of(y_weight));
@@ -155,12 +183,13 @@ PYBIND11_MODULE(_liftopt_banded, module) {
           [](Solver& solver, const Doubles& lower_x, const Doubles& upper_x, const Doubles& lower_g,
              const Doubles& upper_g, const Doubles& x0, const std::optional<std::tuple<Doubles, Doubles>>& warm,
              double tolerance, double objective_scaling, double seconds, double mu, double push, int max_iterations,
-             int verbose) {
-            const banded::Options options{tolerance, objective_scaling, seconds, mu, push, max_iterations, verbose};
+             int predictions, int verbose) {
+            const banded::Options options{tolerance, objective_scaling, seconds, mu, push, max_iterations,
+                                           predictions, verbose};
             return solve(solver.point, *solver.nlp, lower_x, upper_x, lower_g, upper_g, x0, warm, options);
           },
           py::kw_only(), py::arg("lower_x"), py::arg("upper_x"), py::arg("lower_g"), py::arg("upper_g"),
           py::arg("x0"), py::arg("warm") = py::none(), py::arg("tolerance") = 1e-6,
           py::arg("objective_scaling") = 0.1, py::arg("seconds") = 1e20, py::arg("mu") = 0.1, py::arg("push") = 1e-2,
-          py::arg("max_iterations") = 500, py::arg("verbose") = 0);
+          py::arg("max_iterations") = 500, py::arg("predictions") = 0, py::arg("verbose") = 0);
 }

@@ -75,23 +75,40 @@ int BlockCholesky::at(int row, int column) const {
   return find(low.first, high.first) + high.second * stored(low.first) + low.second;
 }
 
-void BlockCholesky::isolate(int unknown, double* values) const {
+void BlockCholesky::add_places(int unknown, std::vector<int>& places) const {
   const auto [block, place] = position_[unknown];
   const int n = stored(block);
-  double* own = values + diagonal_[block];
-  for (int i = 0; i < n; ++i) own[place * n + i] = own[i * n + place] = 0.0;
-  own[place * n + place] = 1.0;
+  for (int i = 0; i < n; ++i) {
+    places.push_back(diagonal_[block] + place * n + i);
+    places.push_back(diagonal_[block] + i * n + place);
+  }
   for (const Below& below : below_[block])
-    std::fill_n(values + below.offset + place * stored(below.block), stored(below.block), 0.0);
+    for (int i = 0; i < stored(below.block); ++i) places.push_back(below.offset + place * stored(below.block) + i);
   for (int j = 0; j < block; ++j)
     for (const Below& below : below_[j])
       if (below.block == block)
-        for (std::size_t i = 0; i < blocks_[j].size(); ++i) values[below.offset + i * n + place] = 0.0;
+        for (std::size_t i = 0; i < blocks_[j].size(); ++i)
+          places.push_back(below.offset + static_cast<int>(i) * n + place);
 }
 
-bool BlockCholesky::factorise() {
+// Copy block columns up to `last` from the matrix, each when it is first needed: a factorisation that fails has not
+// copied the rest, and what was copied is still in the cache when it is used.
+void BlockCholesky::fetch(const double* matrix, double delta, int last) {
+  if (fetched_ > last) return;
+  const int first = diagonal_[fetched_];
+  const int end = last + 1 < static_cast<int>(blocks_.size()) ? diagonal_[last + 1] : static_cast<int>(storage());
+  std::copy(matrix + first, matrix + end, values_.begin() + first);
+  for (; fetched_ <= last; ++fetched_) {
+    const int n = stored(fetched_);
+    for (std::size_t i = 0; i < blocks_[fetched_].size(); ++i) values_[diagonal_[fetched_] + i * (n + 1)] += delta;
+  }
+}
+
+bool BlockCholesky::factorise(const double* matrix, double delta) {
   std::size_t update = 0;
+  fetched_ = 0;
   for (std::size_t j = 0; j < blocks_.size(); ++j) {
+    fetch(matrix, delta, below_[j].empty() ? static_cast<int>(j) : below_[j].back().block);
     const int n = static_cast<int>(blocks_[j].size()), ld = stored(static_cast<int>(j));
     double* inverse = inverses_.data() + inverse_[j];
     if (!dense_.factorise(values_.data() + diagonal_[j], ld, n, inverse, kSmallestPivot)) return false;

@@ -24,16 +24,13 @@ class BlockCholesky {
 
   // Where the entry (row, column) is stored: once, in the lower triangle by the order of elimination.
   int at(int row, int column) const;
-  // Whether one unknown is eliminated before another.
-  bool before(int one, int other) const { return position_[one] < position_[other]; }
-  double* values() { return values_.data(); }
   std::size_t storage() const { return values_.size(); }
 
-  // Make the row and column of an unknown those of the identity, in a matrix stored as this one is.
-  void isolate(int unknown, double* values) const;
+  // Append the places of all entries in the row and the column of an unknown.
+  void add_places(int unknown, std::vector<int>& places) const;
 
-  // Factorise in place; false where the matrix is not positive definite.
-  bool factorise();
+  // Factorise `matrix` + delta I, stored as the factors are; false where it is not positive definite.
+  bool factorise(const double* matrix, double delta);
 
   // Solve with the factors, in place.
   void solve(double* x);
@@ -46,11 +43,13 @@ class BlockCholesky {
     int block, offset;
   };
   int find(int row, int column) const;
+  void fetch(const double* matrix, double delta, int last);
   int stored(int block) const { return padded(static_cast<int>(blocks_[block].size())); }
 
   std::vector<std::vector<int>> blocks_;
   std::vector<std::pair<int, int>> position_;  // block and place in it, of each unknown
-  std::vector<int> diagonal_, inverse_;        // offsets
+  std::vector<int> diagonal_, inverse_;        // offsets; a block column is stored whole, from its diagonal block on
+  int fetched_ = 0;                            // block columns that are no longer those of the last matrix
   std::vector<std::vector<Below>> below_;
   std::vector<int> updates_;  // offsets of the targets of each column's updates, in the order of use
   std::vector<int> first_;    // of each block in the permuted vector

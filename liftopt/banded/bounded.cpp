@@ -11,6 +11,10 @@ constexpr double kFarthestFromCentre = 1e10;
 // Multipliers of a warm start stay within this factor of the centre.
 constexpr double kWarmRoom = 1e2;
 
+double near_centre(double z, double distance, double mu) {
+  return std::min(std::max(z, mu / distance / kWarmRoom), mu / distance * kWarmRoom);
+}
+
 }  // namespace
 
 Bounded::Bounded(const double* lower_bound, const double* upper_bound, int n)
@@ -48,11 +52,13 @@ void Bounded::centre(double mu) {
 }
 
 void Bounded::warm(const double* multiplier, double mu) {
-  const auto near = [mu](double z, double distance) {
-    return std::min(std::max(z, mu / distance / kWarmRoom), mu / distance * kWarmRoom);
-  };
-  for (int i : low_) z_low[i] = near(-multiplier[i], value[i] - lower[i]);
-  for (int i : high_) z_high[i] = near(multiplier[i], upper[i] - value[i]);
+  for (int i : low_) z_low[i] = near_centre(-multiplier[i], value[i] - lower[i], mu);
+  for (int i : high_) z_high[i] = near_centre(multiplier[i], upper[i] - value[i], mu);
+}
+
+void Bounded::predict_multipliers(double mu) {
+  for (int i : low_) z_low[i] = near_centre(z_low[i] + dz_low_[i], value[i] - lower[i], mu);
+  for (int i : high_) z_high[i] = near_centre(z_high[i] + dz_high_[i], upper[i] - value[i], mu);
 }
 
 void Bounded::sigma(double* out) const {

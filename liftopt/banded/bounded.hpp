@@ -48,6 +48,9 @@ class Bounded {
   // Move the multipliers and keep them within a factor of the centre (16).
   void move_multipliers(double length, double mu);
 
+  // Move the multipliers by whole steps, not too far from the centre.
+  void predict_multipliers(double mu);
+
   // Largest |distance z - mu|.
   double complementarity(double mu) const;
 

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "nlp.hpp"
+#include "sparse_nlp.hpp"
 
 namespace banded {
 
-class CallbackNlp : public Nlp {
+class CallbackNlp : public SparseNlp {
  public:
   using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
@@ -19,12 +19,8 @@ class CallbackNlp : public Nlp {
   // by rows, upper nonzeros of the Hessian by rows).
   CallbackNlp(pybind11::function evaluate, pybind11::function differentiate, Sparse jacobian_pattern,
               Sparse hessian_pattern)
-      : evaluate_(std::move(evaluate)), differentiate_(std::move(differentiate)) {
-    jacobian = std::move(jacobian_pattern);
-    hessian = std::move(hessian_pattern);
-    gradient.resize(unknowns());
-    squares.assign(rows(), 0.0);
-  }
+      : SparseNlp(std::move(jacobian_pattern), std::move(hessian_pattern)), evaluate_(std::move(evaluate)),
+        differentiate_(std::move(differentiate)) {}
 
   double evaluate(const double* x, double* g) override {
     pybind11::gil_scoped_acquire python;

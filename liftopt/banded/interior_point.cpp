@@ -11,6 +11,10 @@ namespace {
 
 // Table of constants in section 3 of the paper.
 constexpr double kBarrierError = 10.0, kLinearDecrease = 0.2, kSuperlinear = 1.5, kLeastTau = 0.99;
+// The last barrier parameter, as a share of the complementarity that the tolerance allows.
+constexpr double kLeastMu = 0.4;
+// The share of the violation that a whole Newton step of a warm start may leave.
+constexpr double kPredicted = 0.5;
 constexpr int kMostHalvings = 24, kMostCorrections = 2, kMostShifts = 6;
 constexpr double kFirstShift = 1e-2, kShiftGrowth = 10.0;
 
@@ -31,7 +35,7 @@ Result InteriorPoint::solve(const double* lower_x, const double* upper_x, const 
                             const double* x0, const double* warm_x, const double* warm_g, const Options& options) {
   const double began = seconds_now();
   options_ = options;
-  evaluations_ = 0;
+  evaluations_ = predictions_ = 0;
   evaluation_seconds_ = 0.0;
   x_ = Bounded(lower_x, upper_x, nlp_.unknowns());
   s_ = Bounded(lower_g, upper_g, nlp_.rows());
@@ -41,7 +45,8 @@ Result InteriorPoint::solve(const double* lower_x, const double* upper_x, const 
   start(x0, warm_x, warm_g);
 
   Result result;
-  const double least_mu = 0.1 * options.tolerance * options.objective_scaling;
+  result.iterations = predictions_;
+  const double least_mu = kLeastMu * options.tolerance * options.objective_scaling;
   for (;; ++result.iterations) {
     differentiate();
     result.error = original_error();
@@ -90,7 +95,40 @@ void InteriorPoint::start(const double* x0, const double* warm_x, const double* 
     s_.centre(mu_);
     for (int i = 0; i < s_.size(); ++i) lambda_[i] = s_.z_high[i] - s_.z_low[i];
   }
+  while (predictions_ < options_.predictions && predict()) ++predictions_;
   filter_ = Filter(merit(now_).theta);
+}
+
+// Take the whole Newton step and move what left the bounds back inside: near a solution, bounds that become active
+// would shorten step after step, while the step as a whole tells which do. It is undone where it does not take the
+// violation down.
+bool InteriorPoint::predict() {
+  const double theta = merit(now_).theta;
+  differentiate();
+  find_weights();
+  if (!newton_.factorise(sigma_x_.data(), sigma_s_.data())) return false;
+  solve_newton(residual_);
+  x_.find_multiplier_steps(mu_, newton_.dx.data());
+  s_.find_multiplier_steps(mu_, ds_.data());
+  const Point point = now_;
+  const Bounded x = x_, s = s_;
+  for (int i = 0; i < x_.size(); ++i) x_.value[i] += newton_.dx[i];
+  x_.push_inside(options_.push);
+  now_.x = x_.value;
+  evaluate(now_);
+  s_.value = now_.g;
+  s_.push_inside(options_.push);
+  now_.s = s_.value;
+  if (!(merit(now_).theta <= kPredicted * theta)) {
+    now_ = point;
+    x_ = x;
+    s_ = s;
+    return false;
+  }
+  for (int i = 0; i < s_.size(); ++i) lambda_[i] += dlambda_[i];
+  x_.predict_multipliers(mu_);
+  s_.predict_multipliers(mu_);
+  return true;
 }
 
 double InteriorPoint::evaluate(Point& point) {
@@ -106,7 +144,7 @@ void InteriorPoint::differentiate() {
   nlp_.differentiate(now_.x.data(), lambda_.data(), options_.objective_scaling);
   evaluation_seconds_ += seconds_now() - began;
   lagrangian_ = nlp_.gradient;
-  nlp_.jacobian.multiply_transposed(lambda_.data(), lagrangian_.data());
+  nlp_.multiply_jacobian_transposed(lambda_.data(), lagrangian_.data());
   residuals();
 }
 
@@ -118,7 +156,7 @@ void InteriorPoint::residuals() {
 void InteriorPoint::solve_newton(const Vector& residual) {
   std::fill(right_.begin(), right_.end(), 0.0);
   for (int i = 0; i < s_.size(); ++i) rows_[i] = equality_[i] ? 0.0 : sigma_s_[i] * residual[i] + centre_[i];
-  nlp_.jacobian.multiply_transposed(rows_.data(), right_.data());
+  nlp_.multiply_jacobian_transposed(rows_.data(), right_.data());
   for (int i = 0; i < x_.size(); ++i) right_[i] += lagrangian_[i];
   x_.add_barrier_gradient(mu_, right_.data());
   for (double& entry : right_) entry = -entry;
@@ -130,11 +168,15 @@ void InteriorPoint::solve_newton(const Vector& residual) {
   }
 }
 
-bool InteriorPoint::step() {
+void InteriorPoint::find_weights() {
   x_.sigma(sigma_x_.data());
   s_.sigma(sigma_s_.data());
   for (int i = 0; i < s_.size(); ++i) centre_[i] = -lambda_[i];
   s_.add_barrier_gradient(mu_, centre_.data());
+}
+
+bool InteriorPoint::step() {
+  find_weights();
   double shift = 0.0;
   for (int attempt = 0; attempt < kMostShifts; ++attempt) {
     if (!newton_.factorise(sigma_x_.data(), sigma_s_.data(), shift)) return false;

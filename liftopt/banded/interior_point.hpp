@@ -4,6 +4,7 @@
 // algorithm for large-scale nonlinear programming", Math. Program. 106, 25-57 (equations and steps are its own): the
 // barrier parameter decreases by (7), steps keep a share of every distance to a bound (15), the filter judges them
 // (section 2.3), a second-order correction is tried (section 2.4). What is different:
+//   - a warm start may begin with whole Newton steps that no bound shortens (`predict`);
 //   - the Newton system is condensed to the unknowns and factorised by a block Cholesky, see newton.hpp;
 //   - there is no restoration phase: where no step is acceptable, delta grows a few times, then it gives up and says
 //     so, or that the violation cannot be reduced from here.
@@ -26,6 +27,7 @@ struct Options {
   double seconds = INFINITY;         // wall time before it stops
   double mu = 0.1, push = 1e-2;      // barrier parameter and distance from bounds at the start
   int max_iterations = 500;
+  int predictions = 0;               // Newton steps at the start that no bound shortens
   int verbose = 0;
 };
 
@@ -56,6 +58,8 @@ class InteriorPoint {
   };
   void start(const double* x0, const double* warm_x, const double* warm_g);
   void differentiate();
+  bool predict();
+  void find_weights();
   double barrier_error(double mu) const;
   double original_error() const;
   void residuals();
@@ -83,7 +87,7 @@ class InteriorPoint {
   Vector ds_, dlambda_, right_, rows_;
   double mu_ = 0.1, tau_ = 0.99, slope_ = 0.0, length_ = 0.0;
   Merit from_{0.0, 0.0};
-  int evaluations_ = 0;
+  int evaluations_ = 0, predictions_ = 0;
   double evaluation_seconds_ = 0.0;
 };
 

@@ -2,128 +2,246 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
+
+#include "knot_assembly.hpp"
 
 namespace banded {
 
-KernelNlp::KernelNlp(int lanes, std::vector<KernelPart> parts, const Vector& weights, Sparse combine, Sparse linear,
-                     Sparse jacobian_pattern, Scatter jacobian_scatter, Sparse hessian_pattern,
-                     Scatter hessian_scatter)
-    : lanes_(lanes), groups_((static_cast<int>(weights.size()) + lanes - 1) / lanes), parts_(std::move(parts)),
-      weights_(weights), combine_(std::move(combine)), linear_(std::move(linear)),
-      jacobian_scatter_(std::move(jacobian_scatter)), hessian_scatter_(std::move(hessian_scatter)) {
-  jacobian = std::move(jacobian_pattern);
-  hessian = std::move(hessian_pattern);
-  const int knots = groups_ * lanes_;
-  weights_.resize(knots, 0.0);
-  squares.resize(rows());
-  rows_.resize(rows());
-  gradient.resize(unknowns());
-  int outputs = 0, slopes = 0, curvatures = 0, widest = 0;
+KernelNlp::KernelNlp(Knots knots, std::vector<KernelPart> parts, std::vector<KnotRow> knot_rows, Sparse linear)
+    : knots_(std::move(knots)), parts_(std::move(parts)), knot_rows_(std::move(knot_rows)), linear_(std::move(linear)) {
   for (const KernelPart& part : parts_) {
-    if (part.select.rows != knots * part.n_y || part.squared_rows.size() != part.squared_factors.size())
-      throw std::invalid_argument("a part does not fit the mesh");
-    y_.emplace_back(part.select.rows);
-    outputs += part.n_c * knots;
-    slopes += part.jacobian_nonzeros * knots;
-    curvatures += part.curvature_nonzeros * knots + part.n_y;
-    widest = std::max(widest, part.select.rows);
+    columns_.push_back(part.columns);
+    first_y_.push_back(n_y_);
+    first_c_.push_back(n_c_);
+    first_slope_.push_back(n_slopes_);
+    first_curvature_.push_back(n_curvatures_);
+    n_y_ += part.columns.size();
+    n_c_ += part.n_c;
+    n_slopes_ += static_cast<int>(part.jacobian_row.size());
+    n_curvatures_ += static_cast<int>(part.curvature_row.size()) + part.columns.size();
   }
-  if (jacobian_scatter_.map.columns() != slopes || hessian_scatter_.map.columns() != curvatures ||
-      combine_.columns != outputs)
-    throw std::invalid_argument("the scatters do not fit the kernels");
-  c_.resize(outputs);
-  pull_.resize(outputs);
-  slopes_.resize(slopes);
-  curvatures_.resize(curvatures);
-  by_y_.resize(widest);
+  std::vector<char> taken(linear_.rows, 0);
+  for (int r = 0; r < linear_.rows; ++r) taken[r] = linear_.start[r] < linear_.start[r + 1];
+  for (const KnotRow& row : knot_rows_) {
+    if (static_cast<int>(row.row.size()) != knots_.knots()) throw std::invalid_argument("a row does not fit the mesh");
+    for (int r : row.row)
+      if (r >= 0 && std::exchange(taken.at(r), 1)) throw std::invalid_argument("a row of g has two meanings");
+    for (const KnotRow::Term& term : row.terms)
+      if (term.output < 0 || term.output >= parts_.at(term.part).n_c) throw std::invalid_argument("no such output");
+  }
+  gradient.resize(linear_.columns);
+  squares.resize(linear_.rows);
+  const int groups = knots_.groups();
+  y_.resize(groups * n_y_ * lanes());
+  for (Aligned* v : {&other_y_, &sum_y_}) v->resize(n_y_ * lanes());
+  for (Aligned* v : {&c_, &pull_}) v->resize(groups * n_c_ * lanes());
+  slopes_.resize(groups * n_slopes_ * lanes());
+  curvatures_.resize(groups * n_curvatures_ * lanes());
+  row_values_.resize(rows());
+  square_pull_.resize(n_c_ * lanes());
+  find_squares();
+  plan_products();
+}
+
+void KernelNlp::find_squares() {
+  squared_.resize(parts_.size());
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    for (int j = 0; j < parts_[p].n_squared; ++j) {
+      const auto own = std::find_if(knot_rows_.begin(), knot_rows_.end(), [&](const KnotRow& row) {
+        return row.terms.size() == 1 && row.terms[0].part == static_cast<int>(p) && row.terms[0].output == j &&
+               std::find(row.row.begin(), row.row.end(), -1) == row.row.end();
+      });
+      if (own == knot_rows_.end())
+        throw std::invalid_argument("a squared output has no constraint row of its own to be condensed with");
+      squared_[p].push_back({first_c_[p] + j, static_cast<int>(own - knot_rows_.begin()), own->terms[0].factor});
+    }
+}
+
+void KernelNlp::plan_products() {
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const KernelPart& part = parts_[p];
+    for (std::size_t e = 0; e < part.jacobian_row.size(); ++e) {
+      const int value = first_slope_[p] + static_cast<int>(e);
+      const int row = first_c_[p] + part.jacobian_row[e], column = first_y_[p] + part.jacobian_column[e];
+      by_jacobian_.push_back({value, column, row});
+      by_jacobian_transposed_.push_back({value, row, column});
+    }
+    const auto add = [&](int value, int row, int column) {
+      by_hessian_.push_back({value, first_y_[p] + column, first_y_[p] + row});
+      if (row != column) by_hessian_.push_back({value, first_y_[p] + row, first_y_[p] + column});
+    };
+    int value = first_curvature_[p];
+    for (std::size_t e = 0; e < part.curvature_row.size(); ++e)
+      add(value++, part.curvature_row[e], part.curvature_column[e]);
+    for (int j = 0; j < part.columns.size(); ++j) add(value++, j, j);
+  }
 }
 
 void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight) {
   KernelPart& at = parts_.at(part);
-  const std::size_t squared = at.squared_rows.size() / (groups_ * lanes_);
-  if (static_cast<int>(parameters.size()) != at.n_p || c_weight.size() != squared ||
-      static_cast<int>(y_weight.size()) != at.n_y)
+  if (static_cast<int>(parameters.size()) != at.n_p || static_cast<int>(c_weight.size()) != at.n_squared ||
+      static_cast<int>(y_weight.size()) != at.columns.size())
     throw std::length_error("the parameters of a part do not have its sizes");
-  at.parameters.resize(parameters.size() * lanes_);
-  for (std::size_t i = 0; i < at.parameters.size(); ++i) at.parameters[i] = parameters[i / lanes_];
+  at.parameters.resize(parameters.size() * lanes());
+  for (std::size_t i = 0; i < at.parameters.size(); ++i) at.parameters[i] = parameters[i / lanes()];
   at.c_weight = std::move(c_weight);
   at.y_weight = std::move(y_weight);
   at_.clear();
 }
 
-double KernelNlp::evaluate(const double* x, double* g) {
-  double f = 0.0;
-  double* c = c_.data();
-  at_.assign(x, x + unknowns());
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const KernelPart& part = parts_[i];
-    std::fill(y_[i].begin(), y_[i].end(), 0.0);
-    part.select.multiply(x, y_[i].data());
-    const double* y = y_[i].data();
-    for (int group = 0; group < groups_; ++group, y += part.n_y * lanes_, c += part.n_c * lanes_) {
-      const double* arguments[] = {y, part.parameters.data()};
-      double* results[] = {c};
-      part.value(arguments, results, nullptr, nullptr, 0);
-      const double* w = weights_.data() + group * lanes_;
-      const auto add_squares = [&](const Vector& weight, const double* values) {
-        for (std::size_t j = 0; j < weight.size(); ++j)
-          for (int l = 0; l < lanes_; ++l) {
-            const double value = values[j * lanes_ + l];
-            f += w[l] * weight[j] * value * value;
-          }
-      };
-      add_squares(part.c_weight, c);
-      add_squares(part.y_weight, y);
+double KernelNlp::add_squares(int group) const {
+  const int width = lanes();
+  const double *w = knots_.weights(group), *c = c_.data() + group * n_c_ * width;
+  const double* y = y_.data() + group * n_y_ * width;
+  double sum = 0.0;
+  const auto add = [&](const Vector& weight, const double* values) {
+    for (std::size_t j = 0; j < weight.size(); ++j)
+      if (weight[j] != 0.0)
+        for (int l = 0; l < width; ++l) sum += w[l] * weight[j] * values[j * width + l] * values[j * width + l];
+  };
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    add(parts_[p].c_weight, c + first_c_[p] * width);
+    add(parts_[p].y_weight, y + first_y_[p] * width);
+  }
+  return sum;
+}
+
+// g += G c
+void KernelNlp::add_outputs(int group, const double* c, double* g) const {
+  const int width = lanes(), count = knots_.knots_of(group);
+  for (const KnotRow& row : knot_rows_) {
+    const int* to = row.row.data() + group * width;
+    for (const KnotRow::Term& term : row.terms) {
+      const double* from = c + (first_c_[term.part] + term.output) * width;
+      for (int l = 0; l < count; ++l)
+        if (to[l] >= 0) g[to[l]] += term.factor * from[l];
     }
   }
+}
+
+// pull = G^T multipliers
+void KernelNlp::pull_back(int group, const double* multipliers, double* pull) const {
+  const int width = lanes(), count = knots_.knots_of(group);
+  std::fill_n(pull, n_c_ * width, 0.0);
+  for (const KnotRow& row : knot_rows_) {
+    const int* from = row.row.data() + group * width;
+    for (const KnotRow::Term& term : row.terms) {
+      double* to = pull + (first_c_[term.part] + term.output) * width;
+      for (int l = 0; l < count; ++l)
+        if (from[l] >= 0) to[l] += term.factor * multipliers[from[l]];
+    }
+  }
+}
+
+double KernelNlp::evaluate(const double* x, double* g) {
+  double f = 0.0;
+  at_.assign(x, x + unknowns());
   std::fill_n(g, rows(), 0.0);
-  combine_.multiply(c_.data(), g);
+  for (int group = 0; group < knots_.groups(); ++group) {
+    double *y = y_.data() + group * n_y_ * lanes(), *c = c_.data() + group * n_c_ * lanes();
+    knots_.select(group, columns_, x, y);
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      const double* arguments[] = {y + first_y_[p] * lanes(), parts_[p].parameters.data()};
+      double* results[] = {c + first_c_[p] * lanes()};
+      parts_[p].value(arguments, results, nullptr, nullptr, 0);
+    }
+    f += add_squares(group);
+    add_outputs(group, c, g);
+  }
   linear_.multiply(x, g);
   return f;
 }
 
 void KernelNlp::differentiate(const double* x, const double* multipliers, double scale) {
-  if (at_.empty() || !std::equal(at_.begin(), at_.end(), x)) evaluate(x, rows_.data());
-  std::fill(pull_.begin(), pull_.end(), 0.0);
-  combine_.multiply_transposed(multipliers, pull_.data());
+  if (at_.empty() || !std::equal(at_.begin(), at_.end(), x)) evaluate(x, row_values_.data());
   std::fill(gradient.begin(), gradient.end(), 0.0);
-  std::fill(squares.begin(), squares.end(), 0.0);
-  std::fill(rows_.begin(), rows_.end(), 0.0);
-  int c_at = 0, slope_at = 0, curvature_at = 0;
-  for (std::size_t i = 0; i < parts_.size(); ++i) differentiate_part(i, scale, c_at, slope_at, curvature_at);
-  for (const KernelPart& part : parts_)
-    for (double weight : part.y_weight) curvatures_[curvature_at++] = 2.0 * scale * weight;
-  jacobian_scatter_.apply(slopes_, jacobian.value);
-  hessian_scatter_.apply(curvatures_, hessian.value);
-  jacobian.multiply_transposed(rows_.data(), gradient.data());
+  for (int group = 0; group < knots_.groups(); ++group) {
+    double* by_y = sum_y_.data();
+    pull_back(group, multipliers, pull_.data() + group * n_c_ * lanes());
+    std::fill_n(by_y, n_y_ * lanes(), 0.0);
+    differentiate(group, scale, by_y);
+    knots_.add_selected(group, columns_, by_y, gradient.data());
+  }
 }
 
-void KernelNlp::differentiate_part(std::size_t i, double scale, int& c_at, int& slope_at, int& curvature_at) {
-  const KernelPart& part = parts_[i];
-  const int squared = static_cast<int>(part.c_weight.size());
-  const double* y = y_[i].data();
-  std::fill(by_y_.begin(), by_y_.end(), 0.0);
-  for (int group = 0; group < groups_; ++group, y += part.n_y * lanes_, c_at += part.n_c * lanes_) {
-    for (int j = 0; j < squared * lanes_; ++j) {
-      const int row = part.squared_rows[group * squared * lanes_ + j];
-      if (row < 0) continue;
-      // The square's 2 w c' c'^T in terms of rows of g, which are factor times c.
-      const double factor = part.squared_factors[group * squared * lanes_ + j];
-      const double weight = 2.0 * scale * weights_[group * lanes_ + j % lanes_] * part.c_weight[j / lanes_];
-      pull_[c_at + j] += weight * c_[c_at + j];
-      rows_[row] = weight * c_[c_at + j] / factor;
-      squares[row] = weight / (factor * factor);
+void KernelNlp::differentiate(int group, double scale, double* by_y) {
+  const int width = lanes();
+  const double *w = knots_.weights(group), *c = c_.data() + group * n_c_ * width;
+  const double* y = y_.data() + group * n_y_ * width;
+  double *pull = pull_.data() + group * n_c_ * width, *slopes = slopes_.data() + group * n_slopes_ * width;
+  double* curvatures = curvatures_.data() + group * n_curvatures_ * width;
+  // The pull of the squares alone, whose product with the Jacobian is their gradient.
+  double* square_pull = square_pull_.data();
+  std::fill_n(square_pull, n_c_ * width, 0.0);
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const KernelPart& part = parts_[p];
+    for (int j = 0; j < part.n_squared; ++j) {
+      const Square& square = squared_[p][j];
+      const int* row = knot_rows_[square.row].row.data() + group * width;
+      for (int l = 0; l < knots_.knots_of(group); ++l) {
+        // The square's 2 w c' c'^T in terms of rows of g, which are factor times c.
+        const double weight = 2.0 * scale * w[l] * part.c_weight[j];
+        square_pull[square.output * width + l] = weight * c[square.output * width + l];
+        pull[square.output * width + l] += square_pull[square.output * width + l];
+        squares[row[l]] = weight / (square.factor * square.factor);
+      }
     }
-    for (int j = 0; j < part.n_y * lanes_; ++j)
-      by_y_[group * part.n_y * lanes_ + j] =
-          2.0 * scale * weights_[group * lanes_ + j % lanes_] * part.y_weight[j / lanes_] * y[j];
-    const double* arguments[] = {y, part.parameters.data(), pull_.data() + c_at};
-    double* results[] = {slopes_.data() + slope_at, curvatures_.data() + curvature_at};
+    const double* arguments[] = {y + first_y_[p] * width, part.parameters.data(), pull + first_c_[p] * width};
+    double* results[] = {slopes + first_slope_[p] * width, curvatures + first_curvature_[p] * width};
     part.derivatives(arguments, results, nullptr, nullptr, 0);
-    slope_at += part.jacobian_nonzeros * lanes_;
-    curvature_at += part.curvature_nonzeros * lanes_;
+    double* diagonal = curvatures + (first_curvature_[p] + static_cast<int>(part.curvature_row.size())) * width;
+    for (int j = 0; j < part.columns.size(); ++j)
+      for (int l = 0; l < width; ++l) {
+        diagonal[j * width + l] = 2.0 * scale * w[l] * part.y_weight[j];
+        by_y[(first_y_[p] + j) * width + l] = diagonal[j * width + l] * y[(first_y_[p] + j) * width + l];
+      }
   }
-  part.select.multiply_transposed(by_y_.data(), gradient.data());
+  lane_operations(width).multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()),
+                                  slopes, square_pull, by_y);
+}
+
+void KernelNlp::multiply_jacobian(const double* x, double* y) {
+  double *at_knot = other_y_.data(), *c = pull_.data();
+  for (int group = 0; group < knots_.groups(); ++group) {
+    knots_.select(group, columns_, x, at_knot);
+    std::fill_n(c, n_c_ * lanes(), 0.0);
+    lane_operations(lanes()).multiply(by_jacobian_.data(), static_cast<int>(by_jacobian_.size()), slopes(group),
+                                      at_knot, c);
+    add_outputs(group, c, y);
+  }
+  linear_.multiply(x, y);
+}
+
+void KernelNlp::multiply_jacobian_transposed(const double* x, double* y) {
+  double *at_knot = other_y_.data(), *pull = pull_.data();
+  for (int group = 0; group < knots_.groups(); ++group) {
+    pull_back(group, x, pull);
+    std::fill_n(at_knot, n_y_ * lanes(), 0.0);
+    lane_operations(lanes()).multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()),
+                                      slopes(group), pull, at_knot);
+    knots_.add_selected(group, columns_, at_knot, y);
+  }
+  linear_.multiply_transposed(x, y);
+}
+
+void KernelNlp::multiply_hessian(const double* x, double* y) {
+  double *at_knot = other_y_.data(), *sum = sum_y_.data();
+  for (int group = 0; group < knots_.groups(); ++group) {
+    knots_.select(group, columns_, x, at_knot);
+    std::fill_n(sum, n_y_ * lanes(), 0.0);
+    lane_operations(lanes()).multiply(by_hessian_.data(), static_cast<int>(by_hessian_.size()), curvatures(group),
+                                      at_knot, sum);
+    knots_.add_selected(group, columns_, sum, y);
+  }
+}
+
+std::vector<std::pair<int, int>> KernelNlp::coupled(const std::vector<std::vector<int>>& blocks) const {
+  return KnotAssembly::coupled(*this, blocks);
+}
+
+std::unique_ptr<Assembly> KernelNlp::assembly(const BlockCholesky& storage) const {
+  return std::make_unique<KnotAssembly>(*this, storage);
 }
 
 }  // namespace banded

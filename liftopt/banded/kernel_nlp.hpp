@@ -2,16 +2,16 @@
 //
 //     f = sum_parts sum_k w_k (c_weight . c_k^2 + y_weight . y_k^2),   g = G C(x) + A x,   y = S x,
 //
-// C all outputs c of all kernels. Every nonzero of the derivatives is a fixed linear combination of what the kernels
-// return, so one sparse product scatters it. A kernel serves `lanes` knots a call, its values interleaved: entry j of
-// n of knot k is at ((k / lanes) n + j) lanes + k % lanes. The last group is filled up with knots of weight zero that
-// no map reads.
+// C all outputs c of all kernels. Derivatives stay at the knots, as the kernels return them: a product with the
+// Jacobian or the Hessian interpolates to the knots, multiplies there for several knots at once, and interpolates back.
 #pragma once
 
 #include <vector>
 
+#include "knots.hpp"
+#include "lane_operations.hpp"
 #include "nlp.hpp"
-#include "sliced.hpp"
+#include "sparse.hpp"
 
 namespace banded {
 
@@ -22,49 +22,72 @@ using Kernel = int (*)(const double** arguments, double** results, long long* iw
 struct KernelPart {
   Kernel value = nullptr;        // (y, p) -> c
   Kernel derivatives = nullptr;  // (y, p, m) -> dc/dy, upper triangle of m . c''
-  int n_y = 0, n_c = 0, n_p = 0, jacobian_nonzeros = 0, curvature_nonzeros = 0;
-  Sparse select;  // S, its rows interleaved
-  // Row of g that is proportional to each squared output, by which factor; interleaved, -1 where there is no knot.
-  std::vector<int> squared_rows;
-  Vector squared_factors;
-  Aligned parameters;           // a lane each
-  Vector c_weight, y_weight;    // of the squared outputs and of y in the objective
+  PartColumns columns;
+  int n_c = 0, n_p = 0, n_squared = 0;
+  std::vector<int> jacobian_row, jacobian_column, curvature_row, curvature_column;  // of the nonzeros
+  Aligned parameters;                                                               // a lane each
+  Vector c_weight, y_weight;  // of the squared leading outputs and of y in the objective
 };
 
-// A linear map to the nonzeros of a matrix, with a constant part.
-struct Scatter {
-  Sliced map;
-  Vector offset;
-  void apply(const Aligned& values, Vector& nonzeros) const {
-    nonzeros = offset;
-    map.multiply(values.data(), nonzeros.data());
-  }
+// A row of g at every knot that has it: the sum of factors times outputs of the knot.
+struct KnotRow {
+  struct Term {
+    int part, output;
+    double factor;
+  };
+  std::vector<Term> terms;
+  std::vector<int> row;  // (knots,) which of g, or -1
 };
 
 class KernelNlp : public Nlp {
  public:
-  // `weights`: of the knots. `combine` is G, its columns interleaved; `linear` is A; the patterns of the Jacobian and
-  // of the upper triangle of the Hessian have what the scatters fill: the scatters' columns are the kernels' slopes,
-  // or their curvatures and then, of each part, n_y entries of a diagonal that its knots share.
-  KernelNlp(int lanes, std::vector<KernelPart> parts, const Vector& weights, Sparse combine, Sparse linear,
-            Sparse jacobian_pattern, Scatter jacobian_scatter, Sparse hessian_pattern, Scatter hessian_scatter);
+  // Each row of g has either a KnotRow or entries in `linear`, which is A. Every squared output has a row to itself.
+  KernelNlp(Knots knots, std::vector<KernelPart> parts, std::vector<KnotRow> knot_rows, Sparse linear);
 
   void set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight);
 
   double evaluate(const double* x, double* g) override;
   void differentiate(const double* x, const double* multipliers, double scale) override;
+  void multiply_jacobian(const double* x, double* y) override;
+  void multiply_jacobian_transposed(const double* x, double* y) override;
+  void multiply_hessian(const double* x, double* y) override;
+  std::vector<std::pair<int, int>> coupled(const std::vector<std::vector<int>>& blocks) const override;
+  std::unique_ptr<Assembly> assembly(const BlockCholesky& storage) const override;
+
+  const Knots& knots() const { return knots_; }
+  const std::vector<KernelPart>& parts() const { return parts_; }
+  const std::vector<KnotRow>& knot_rows() const { return knot_rows_; }
+  const Sparse& linear() const { return linear_; }
+  // Where the nonzeros of a part are among those of a knot; the Hessian's are followed by a diagonal of the size of y.
+  int first_slope(int part) const { return first_slope_[part]; }
+  int first_curvature(int part) const { return first_curvature_[part]; }
+  const double* slopes(int group) const { return slopes_.data() + group * n_slopes_ * lanes(); }
+  const double* curvatures(int group) const { return curvatures_.data() + group * n_curvatures_ * lanes(); }
 
  private:
-  void differentiate_part(std::size_t part, double scale, int& c_at, int& slope_at, int& curvature_at);
+  struct Square {
+    int output, row;  // of all outputs of a knot; of the knot rows
+    double factor;
+  };
+  int lanes() const { return knots_.lanes(); }
+  void find_squares();
+  void plan_products();
+  double add_squares(int group) const;
+  void add_outputs(int group, const double* c, double* g) const;
+  void pull_back(int group, const double* multipliers, double* pull) const;
+  void differentiate(int group, double scale, double* slope_by_y);
 
-  int lanes_, groups_;
+  Knots knots_;
   std::vector<KernelPart> parts_;
-  Vector weights_;  // filled up with zeros
-  Sparse combine_, linear_;
-  Scatter jacobian_scatter_, hessian_scatter_;
-  std::vector<Aligned> y_;  // of each part at the last point
-  Vector at_, rows_;
-  Aligned c_, pull_, slopes_, curvatures_, by_y_;
+  std::vector<PartColumns> columns_;
+  std::vector<KnotRow> knot_rows_;
+  Sparse linear_;
+  std::vector<int> first_y_, first_c_, first_slope_, first_curvature_;
+  int n_y_ = 0, n_c_ = 0, n_slopes_ = 0, n_curvatures_ = 0;  // of a knot
+  std::vector<std::vector<Square>> squared_;                 // of each part
+  std::vector<Product> by_jacobian_, by_jacobian_transposed_, by_hessian_;
+  Vector at_, row_values_;
+  Aligned y_, c_, pull_, slopes_, curvatures_, other_y_, sum_y_, square_pull_;  // y, c, pull: of all groups
 };
 
 }  // namespace banded

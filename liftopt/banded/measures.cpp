@@ -82,7 +82,7 @@ bool InteriorPoint::stuck() const {
     norm = std::max(norm, std::fabs(violation[i]));
   }
   if (norm <= options_.tolerance) return false;
-  nlp_.jacobian.multiply_transposed(violation.data(), gradient.data());
+  nlp_.multiply_jacobian_transposed(violation.data(), gradient.data());
   double worst = 0.0;
   for (int i = 0; i < x_.size(); ++i) {
     if (x_.is_held(i)) continue;

@@ -9,9 +9,11 @@ namespace banded {
 namespace {
 
 constexpr double kPenalty = 1e6;
-// delta_w of Waechter and Biegler (2006), section 3.1 and table 3.
+// delta_w of Waechter and Biegler (2006), section 3.1 and table 3. It decays faster than theirs: an attempt that fails
+// costs a fraction of an iteration, and steps that are held back need more iterations.
 constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;
-constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 1.0 / 3.0;
+constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 0.1;
+constexpr double kWorthSkipping = 0.1;
 constexpr int kMostRefinements = 5;
 // Residuals of the linear system at which refinement stops, relative to the right-hand side.
 constexpr double kDualResidual = 1e-9, kPrimalResidual = 1e-2;
@@ -24,15 +26,16 @@ double largest(const Vector& v) {
 
 }  // namespace
 
-Newton::Newton(const Nlp& nlp, std::vector<std::vector<int>> blocks)
+Newton::Newton(Nlp& nlp, std::vector<std::vector<int>> blocks)
     : dx(nlp.unknowns()), j_dx(nlp.rows()), dlambda(nlp.rows()), nlp_(nlp),
-      condensed_(nlp.hessian, nlp.jacobian, std::move(blocks)), row_weight_(nlp.rows()),
+      condensed_(nlp, blocks), row_weight_(nlp.rows()),
       sigma_rows_(nlp.rows()), sigma_x_(nlp.unknowns()), step_(nlp.unknowns()), rows_(nlp.rows()),
       residual_(nlp.unknowns()), row_residual_(nlp.rows()) {}
 
 void Newton::begin(const std::vector<char>& equality, const std::vector<int>& held) {
   equality_ = equality;
   held_ = held;
+  condensed_.hold(held);
   delta_ = last_delta_ = 0.0;
   factorisations = refinements = 0;
   assembly_seconds = factorisation_seconds = 0.0;
@@ -53,15 +56,18 @@ bool Newton::factorise(const double* sigma_x, const double* sigma_s, double leas
   }
   std::copy_n(sigma_x, nlp_.unknowns(), sigma_x_.begin());
   const double began = seconds_now();
-  condensed_.assemble(nlp_.hessian, nlp_.jacobian, row_weight_.data(), sigma_x, held_);
+  condensed_.assemble(row_weight_.data(), sigma_x);
   assembly_seconds += seconds_now() - began;
-  delta_ = least_delta;
+  // Where the last matrix needed a large delta, none at all would hardly do now.
+  const bool likely = delta_ > 0.0 && kDecay * delta_ > kWorthSkipping && least_delta == 0.0;
+  delta_ = likely ? kDecay * delta_ : least_delta;
   if (try_delta()) {
     if (delta_ > 0.0) last_delta_ = delta_;
     return true;
   }
   const bool first = last_delta_ == 0.0;
-  delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
+  if (likely) delta_ *= kGrowth;
+  else delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
   while (!try_delta()) {
     delta_ *= first ? kFirstGrowth : kGrowth;
     if (!(delta_ < kLargestDelta)) return false;
@@ -74,12 +80,12 @@ bool Newton::factorise(const double* sigma_x, const double* sigma_s, double leas
 void Newton::correct(const double* r, const double* c) {
   for (int i = 0; i < nlp_.rows(); ++i) rows_[i] = equality_[i] ? -kPenalty * c[i] : 0.0;
   std::copy_n(r, nlp_.unknowns(), step_.begin());
-  nlp_.jacobian.multiply_transposed(rows_.data(), step_.data());
+  nlp_.multiply_jacobian_transposed(rows_.data(), step_.data());
   for (int i : held_) step_[i] = 0.0;
   condensed_.solve(step_.data());
   for (int i : held_) step_[i] = 0.0;
   std::fill(rows_.begin(), rows_.end(), 0.0);
-  nlp_.jacobian.multiply(step_.data(), rows_.data());
+  nlp_.multiply_jacobian(step_.data(), rows_.data());
   for (int i = 0; i < nlp_.unknowns(); ++i) dx[i] += step_[i];
   for (int i = 0; i < nlp_.rows(); ++i) {
     j_dx[i] += rows_[i];
@@ -99,12 +105,12 @@ void Newton::solve(const double* r, const double* c) {
   double before = INFINITY;
   for (int k = 0; k < kMostRefinements; ++k) {
     std::fill(residual_.begin(), residual_.end(), 0.0);
-    nlp_.hessian.multiply_symmetric(dx.data(), residual_.data());
+    nlp_.multiply_hessian(dx.data(), residual_.data());
     for (int i = 0; i < nlp_.rows(); ++i) {
       row_residual_[i] = equality_[i] ? c[i] + j_dx[i] : 0.0;
       rows_[i] = sigma_rows_[i] * j_dx[i] + (equality_[i] ? dlambda[i] : 0.0);
     }
-    nlp_.jacobian.multiply_transposed(rows_.data(), residual_.data());
+    nlp_.multiply_jacobian_transposed(rows_.data(), residual_.data());
     for (int i = 0; i < nlp_.unknowns(); ++i) residual_[i] = r[i] - residual_[i] - (sigma_x_[i] + delta_) * dx[i];
     for (int i : held_) residual_[i] = 0.0;
     const double dual = largest(residual_) / right;

@@ -21,7 +21,7 @@ namespace banded {
 
 class Newton {
  public:
-  Newton(const Nlp& nlp, std::vector<std::vector<int>> blocks);
+  Newton(Nlp& nlp, std::vector<std::vector<int>> blocks);
 
   // Say which rows are equalities and which unknowns are held; forgets the last delta.
   void begin(const std::vector<char>& equality, const std::vector<int>& held);
@@ -44,7 +44,7 @@ class Newton {
   void correct(const double* r, const double* c);
   bool try_delta();
 
-  const Nlp& nlp_;
+  Nlp& nlp_;
   Condensed condensed_;
   std::vector<char> equality_;
   std::vector<int> held_;

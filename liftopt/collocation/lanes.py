@@ -27,12 +27,13 @@ SYMBOLS = ("wide_value", "wide_derivatives", "wide_lanes")
 FLAGS = ("-O2", "-fno-schedule-insns", "-fno-schedule-insns2", "-fPIC", "-shared", "-fno-math-errno")
 # Extensions of x86-64 that the code gains from, as both the kernel and the compiler call them.
 EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl")
-# What generated code may call beside arithmetic; a function that is missing here would not compile.
+# What generated code may call beside arithmetic; a function that is missing here would not compile. The conditions on
+# LANES are those that lane_operations.cpp tests at run time.
 PRELUDE = """\
 #include <math.h>
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define LANES 8
-#elif defined(__AVX__)
+#elif defined(__AVX2__) && defined(__FMA__)
 #define LANES 4
 #else
 #define LANES 2

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -16,11 +14,9 @@ from liftopt.collocation.dynamics import agent_functions, object_functions
 from liftopt.collocation.kernels import Say
 from liftopt.collocation.lanes import WideKernel, load_wide
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.scatter import Pattern, hessian_pattern, jacobian_pattern
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
-Index = npt.NDArray[np.int64]
 
 
 def wide_kernels(problem: Problem, say: Say | None = None) -> list[WideKernel] | None:
@@ -32,99 +28,68 @@ def wide_kernels(problem: Problem, say: Say | None = None) -> list[WideKernel] |
 
 def kernel_nlp(module: Any, problem: Problem, kernels: list[WideKernel]) -> Any:
     """Return the problem as the wide kernels evaluate it."""
-    parts, constraints, weights = [p.kernel for p in problem.parts], problem.constraints, problem.mesh.weights
-    selects, blocks = [p.select for p in problem.parts], [kernel.jacobian.sparsity_out(0) for kernel in parts]
-    triangles = [kernel.curvature.sparsity_out(0) for kernel in parts]
-    jacobian = jacobian_pattern(blocks, selects, weights, constraints.combine, constraints.linear)
-    hessian = hessian_pattern([[triangle] for triangle in triangles], selects, weights)
-    lanes, knots = kernels[0].lanes, len(weights)
-    outputs, slopes, curvatures = (
-        interleaved(sizes, knots, lanes)
-        for sizes in ([k.n_c for k in parts], [b.nnz() for b in blocks], [t.nnz() for t in triangles])
-    )
-    # The pattern has each part's diagonal after its curvatures, the extension all diagonals after all curvatures.
-    order, end = [], curvatures.end
-    for kernel, place in zip(parts, curvatures.places, strict=True):
-        order += [place, end + np.arange(kernel.n_y)]
-        end += kernel.n_y
-    jacobian_rows, jacobian_map = _by_rows(jacobian)
-    hessian_rows, hessian_map = _by_rows(hessian)
+    layout, mesh = problem.layout, problem.mesh
     return module.KernelNlp(
-        lanes=lanes,
-        parts=[_part(problem, i, kernels[i], outputs) for i in range(len(parts))],
-        weights=weights,
-        combine=_arrays(_move_columns(constraints.combine, np.concatenate(outputs.places), outputs.end)),
-        linear=_arrays(constraints.linear),
-        jacobian=jacobian_rows,
-        jacobian_scatter=_arrays(_move_columns(jacobian_map[0], np.concatenate(slopes.places), slopes.end)),
-        jacobian_offset=jacobian_map[1],
-        hessian=hessian_rows,
-        hessian_scatter=_arrays(_move_columns(hessian_map[0], np.concatenate(order), end)),
-        hessian_offset=hessian_map[1],
+        lanes=kernels[0].lanes,
+        weights=mesh.weights,
+        basis=np.stack(mesh.basis, axis=1),
+        control=layout.control.ravel().astype(np.int32),
+        force=layout.force.ravel().astype(np.int32),
+        parts=[_part(problem, i, wide) for i, wide in enumerate(kernels)],
+        rows=knot_rows(problem),
+        linear=_arrays(problem.constraints.linear),
     )
 
 
-@dataclass(frozen=True)
-class Interleaved:
-    """Where entries are that wide kernels hold.
-
-    Attributes:
-        places: of each part, (K n,): where entry j of knot k is, at index ``k n + j``.
-        end: after the last of them.
-    """
-
-    places: list[Index]
-    end: int
-
-
-def interleaved(sizes: Sequence[int], knots: int, lanes: int) -> Interleaved:
-    """Return the places of ``sizes`` entries a knot, part after part; see ``kernel_nlp.hpp``."""
-    groups, end, places = -(-knots // lanes), 0, []
-    for n in sizes:
-        knot, entry = np.divmod(np.arange(knots * n), max(1, n))
-        places.append(end + (knot // lanes * n + entry) * lanes + knot % lanes)
-        end += groups * lanes * n
-    return Interleaved(places, end)
-
-
-def _part(problem: Problem, part: int, wide: WideKernel, outputs: Interleaved) -> dict[str, Any]:
+def _part(problem: Problem, part: int, wide: WideKernel) -> dict[str, Any]:
     """Return what the extension takes of an agent or of the object."""
-    kernel, select, knots = problem.parts[part].kernel, problem.parts[part].select, len(problem.mesh.weights)
-    y = interleaved([kernel.n_y], knots, wide.lanes)
-    squared = interleaved([kernel.n_squared], knots, wide.lanes)
-    rows, factors = np.full(squared.end, -1, dtype=np.int32), np.ones(squared.end)
-    first = knots * sum(p.kernel.n_c for p in problem.parts[:part])
-    for k in range(knots):
-        for j in range(kernel.n_squared):
-            at = squared.places[0][k * kernel.n_squared + j]
-            rows[at], factors[at] = _own_row(problem, first + k * kernel.n_c + j)
+    kernel, layout = problem.team.kernels[part], problem.layout
+    coordinates = layout.columns(part)
     return dict(
         value=wide.value,
         derivatives=wide.derivatives,
-        n_y=kernel.n_y,
+        first=coordinates.start,
+        coordinates=coordinates.stop - coordinates.start,
+        forces=np.arange(layout.force.shape[1])[layout.force_columns(part)].astype(np.int32),
         n_c=kernel.n_c,
         n_p=kernel.n_p,
-        jacobian_nonzeros=kernel.jacobian.nnz_out(0),
-        curvature_nonzeros=kernel.curvature.nnz_out(0),
-        select=_arrays(_move_columns(select.T, y.places[0], y.end).T),
-        squared_rows=rows,
-        squared_factors=factors,
+        n_squared=kernel.n_squared,
+        jacobian=_triplet(kernel.jacobian.sparsity_out(0)),
+        curvature=_triplet(kernel.curvature.sparsity_out(0)),
     )
 
 
-def _own_row(problem: Problem, output: int) -> tuple[int, float]:
-    """Return the row of g that is a multiple of one output, and that multiple."""
-    combine, linear = problem.constraints.combine, problem.constraints.linear
-    for entry in range(combine.indptr[output], combine.indptr[output + 1]):
-        row = int(combine.indices[entry])
-        if combine.getrow(row).nnz == 1 and linear.getrow(row).nnz == 0:
-            return row, float(combine.data[entry])
-    raise SolverError("a squared output has no constraint row of its own to be condensed with")
+def _triplet(sparsity: Any) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+    row, column = (np.asarray(indices, dtype=np.int32) for indices in sparsity.get_triplet())
+    return row, column
 
 
-def _move_columns(matrix: Any, places: Index, size: int) -> sp.csr_matrix:
-    entries = sp.coo_matrix(matrix)
-    return sp.csr_matrix((entries.data, (entries.row, places[entries.col])), shape=(matrix.shape[0], size))
+Term = tuple[int, int, float]
+
+
+def knot_rows(problem: Problem) -> list[tuple[list[Term], npt.NDArray[np.int32]]]:
+    """Return the rows of g that are sums of outputs, once for all knots that have them.
+
+    Each is a list of (part, output, factor), and which row it is at every knot, (K,), -1 where there is none.
+
+    Raises:
+        SolverError: a row takes outputs of several knots, or of a knot and unknowns.
+    """
+    knots, parts = len(problem.mesh.weights), problem.team.kernels
+    combine, linear = sp.csr_matrix(problem.constraints.combine), sp.csr_matrix(problem.constraints.linear)
+    combine.sort_indices()
+    where = [(p, k, j) for p, kernel in enumerate(parts) for k in range(knots) for j in range(kernel.n_c)]
+    found: dict[tuple[Term, ...], npt.NDArray[np.int32]] = {}
+    for row in range(combine.shape[0]):
+        entries = slice(combine.indptr[row], combine.indptr[row + 1])
+        places = [where[column] for column in combine.indices[entries]]
+        if not places:
+            continue
+        if len({knot for _, knot, _ in places}) > 1 or linear.indptr[row] != linear.indptr[row + 1]:
+            raise SolverError(f"row {row} of the constraints is not one of a single knot")
+        terms = tuple((p, j, float(v)) for (p, _, j), v in zip(places, combine.data[entries], strict=True))
+        found.setdefault(terms, np.full(knots, -1, dtype=np.int32))[places[0][1]] = row
+    return [(list(terms), rows) for terms, rows in found.items()]
 
 
 def callback_nlp(module: Any, nlp: Nlp, parameters: Array) -> Any:
@@ -152,16 +117,6 @@ def _row_order(sparsity: Any) -> tuple[Any, npt.NDArray[np.int64]]:
     rows = sp.csr_matrix(sp.csc_matrix((np.arange(count, dtype=float), index, start), shape=sparsity.shape))
     rows.sort_indices()
     return _arrays(rows), rows.data.astype(np.int64)
-
-
-def _by_rows(pattern: Pattern) -> tuple[Any, tuple[sp.csr_matrix, Array]]:
-    """Return a pattern's rows, and the map to its nonzeros and its constant part in the order of compressed rows."""
-    numbered = sp.csc_matrix((np.arange(pattern.shape.nnz, dtype=float), pattern.shape.indices, pattern.shape.indptr),
-                             shape=pattern.shape.shape)  # fmt: skip
-    rows = sp.csr_matrix(numbered)
-    rows.sort_indices()
-    order = rows.data.astype(np.int64)
-    return _arrays(rows), (sp.csr_matrix(pattern.scatter)[order], pattern.offset[order])
 
 
 def _arrays(matrix: Any) -> tuple[int, int, npt.NDArray[np.int32], npt.NDArray[np.int32], Array]:

@@ -14,7 +14,7 @@ from liftopt.collocation.guess import PostureSolver, Start, blend, naive_start, 
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions, elimination_order
-from liftopt.collocation.solvers.banded_nlp import interleaved
+from liftopt.collocation.solvers.banded_nlp import knot_rows
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -152,12 +152,49 @@ def test_work_is_linear_in_the_intervals(team: Team, make_task: Callable[..., Li
     np.testing.assert_allclose((counts[2] - counts[1]) / (counts[1] - counts[0]), 2.0, rtol=0.01)
 
 
-def test_interleaved_places() -> None:
-    """By hand: two parts of 2 and 1 entries at 3 knots in pairs of lanes."""
-    found = interleaved([2, 1], 3, 2)
-    np.testing.assert_array_equal(found.places[0], [0, 2, 1, 3, 4, 6])
-    np.testing.assert_array_equal(found.places[1], [8, 9, 10])
-    assert found.end == 12
+def test_knot_rows_make_up_the_constraints(small_lift: Problem) -> None:
+    """Every row of G is one of a knot or empty, and none is left out."""
+    constraints, knots = small_lift.constraints, len(small_lift.mesh.weights)
+    sizes = [kernel.n_c for kernel in small_lift.team.kernels]
+    first = np.concatenate([[0], np.cumsum(sizes) * knots])
+    rebuilt = np.zeros(constraints.combine.shape)
+    for terms, rows in knot_rows(small_lift):
+        for knot in np.flatnonzero(rows >= 0):
+            for part, output, factor in terms:
+                rebuilt[rows[knot], first[part] + knot * sizes[part] + output] += factor
+    np.testing.assert_array_equal(rebuilt, constraints.combine.toarray())
+
+
+def test_objective_and_rows_agree_with_casadis(
+    small_lift: Problem, banded: Banded, starts: list[Start], make_task: Callable[..., LiftTask]
+) -> None:
+    """And with those of a neighbouring task, set without building anything."""
+    other = replace(small_lift, task=make_task(agent_weights=(1.0, 1.0), duration=2.5))
+    for problem in (small_lift, other, small_lift):
+        f, _ = problem.nlp.grad_f(starts[0].x, problem.parameters)
+        g, _ = problem.nlp.jac_g(starts[0].x, problem.parameters)
+        found, rows = banded.evaluate(starts[0].x, problem)
+        np.testing.assert_allclose(found, float(f), rtol=1e-12)
+        np.testing.assert_allclose(rows, g.full().ravel(), rtol=0, atol=1e-9)
+        assert banded.objective(starts[0].x, problem) == found
+
+
+def test_kernels_need_no_assembled_problem(team: Team, make_task: Callable[..., LiftTask], starts: list[Start]) -> None:
+    """Neither the solver nor a solution touches the functions that CasADi would assemble."""
+    problem = Problem(team, make_task(agent_weights=(1.0, 1.0)), RestToRestSpline(12).mesh())
+    Banded(problem, BandedOptions(max_iterations=1)).solve(naive_start(problem).x, deadline=soon())
+    assert "nlp" not in vars(problem)
+
+
+def test_two_threads_solve_on_two_solvers(small_lift: Problem, found: SolverResult, starts: list[Start]) -> None:
+    """The same numbers as alone."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    solvers = [Banded(small_lift), Banded(small_lift)]
+    with ThreadPoolExecutor(2) as pool:
+        results = list(pool.map(lambda solver: solver.solve(starts[0].x, deadline=soon()), solvers))
+    for result in results:
+        np.testing.assert_array_equal(result.x, found.x)
 
 
 @pytest.mark.parametrize("name", shipped_scenarios())

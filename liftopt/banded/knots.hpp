@@ -1,0 +1,56 @@
+// The knots of a collocation mesh, several abreast: lane l of group k / lanes holds knot k, its values interleaved
+// (entry j of lane l at j lanes + l). Lanes after the last knot have no weight, and nothing is read from them.
+//
+// At each knot every coordinate has a value and two derivatives by the phase, which are combinations of the `width`
+// control points from `first` on; the grasp forces of the knot are unknowns themselves.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "aligned.hpp"
+
+namespace banded {
+
+constexpr int kOrders = 3;  // value, first and second derivative
+
+// What one agent or the object has of a knot's variables: y = (q, q', q'', forces).
+struct PartColumns {
+  int first = 0, coordinates = 0;  // of the coordinates of the knot
+  std::vector<int> forces;         // of the forces of the knot
+  int size() const { return kOrders * coordinates + static_cast<int>(forces.size()); }
+};
+
+class Knots {
+ public:
+  // `basis`: (knots, orders, control points), zero away from a few neighbouring control points of each knot.
+  // `control`: (control points, coordinates) and `force`: (knots, forces), places in x.
+  Knots(int lanes, const Vector& weights, const Vector& basis, std::vector<int> control, std::vector<int> force);
+
+  int lanes() const { return lanes_; }
+  int knots() const { return knots_; }
+  int groups() const { return groups_; }
+  int width() const { return width_; }
+  int coordinates() const { return coordinates_; }
+  int forces() const { return forces_; }
+  int points() const { return points_; }
+  int knots_of(int group) const { return std::min(lanes_, knots_ - group * lanes_); }
+  int first(int knot) const { return first_[knot]; }
+  int control(int point, int coordinate) const { return control_[point * coordinates_ + coordinate]; }
+  int force(int knot, int force) const { return force_[knot * forces_ + force]; }
+  const double* weights(int group) const { return weights_.data() + group * lanes_; }
+  // (orders, width) vectors.
+  const double* basis(int group) const { return basis_.data() + group * kOrders * width_ * lanes_; }
+
+  // The variables of all parts of a group, one part after the other.
+  void select(int group, const std::vector<PartColumns>& parts, const double* x, double* y);
+  // x += the transposed map of y.
+  void add_selected(int group, const std::vector<PartColumns>& parts, const double* y, double* x);
+
+ private:
+  int lanes_, knots_, groups_, coordinates_, forces_, points_, width_ = 1;
+  std::vector<int> first_, control_, force_;
+  Aligned weights_, basis_, near_;  // near: the control points of a group's knots
+};
+
+}  // namespace banded
