@@ -20,14 +20,21 @@ from typing import Any
 
 import liftopt
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
+from liftopt.interrupt import INTERRUPTED, interrupts
 from liftopt.lab.calibrate_command import add_calibrate_parser, calibrate_text
+from liftopt.lab.compare_command import add_compare_parser, compare_text
+from liftopt.lab.dry_run_command import add_dry_run_parser, dry_run_text
+from liftopt.lab.export_command import add_export_parser, export_text
 from liftopt.lab.forces_command import add_forces_parser, forces_text
 from liftopt.lab.mocap_command import add_mocap_parser, mocap
 from liftopt.lab.record_command import add_record_parser, record
+from liftopt.lab.scenario_command import add_scenario_parser, scenario_text
+from liftopt.pareto_command import add_pareto_parser, pareto
 from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
 from liftopt.scenario_schema import describe
+from liftopt.sensitivity_command import add_sensitivity_parser, sensitivity
 
-SOLVED, BAD_INPUT, NOT_SOLVED, INTERRUPTED = 0, 2, 3, 130
+SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -89,6 +96,13 @@ def _parser() -> argparse.ArgumentParser:
         help="change one entry of the scenario, for example table.mass=3; may be repeated",
     )
     solve.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    solve.add_argument(
+        "--refine",
+        action="append_const",
+        const="refine.on=true",
+        dest="overrides",
+        help="solve on finer and finer meshes until the scenario's tolerances in [refine] hold; takes seconds",
+    )
     solve.set_defaults(run=_solve)
 
     crosscheck = commands.add_parser(
@@ -151,10 +165,16 @@ def _parser() -> argparse.ArgumentParser:
         help="may be repeated (default: all three)",
     )
     plot.set_defaults(run=_plot)
+    add_sensitivity_parser(commands, _telling(sensitivity))
+    add_pareto_parser(commands, _telling(pareto))
     add_mocap_parser(commands, _mocap)
     add_calibrate_parser(commands, _calibrate)
     add_record_parser(commands, _record)
     add_forces_parser(commands, _forces)
+    add_export_parser(commands, _export)
+    add_dry_run_parser(commands, _telling(dry_run_text))
+    add_compare_parser(commands, _compare)
+    add_scenario_parser(commands, _recorded_scenario)
     return parser
 
 
@@ -198,6 +218,18 @@ def _plot(args: argparse.Namespace) -> int:
     return SOLVED
 
 
+def _telling(job: Callable[[argparse.Namespace, Any], str]) -> Callable[[argparse.Namespace], int]:
+    """Return the command that prints what a long job returns, and meanwhile where it is."""
+
+    def run(args: argparse.Namespace) -> int:
+        with _progress() as progress:
+            text = job(args, progress)
+        _write(text)
+        return SOLVED
+
+    return run
+
+
 def _mocap(args: argparse.Namespace) -> int:
     _write(mocap(args))
     return SOLVED
@@ -215,6 +247,21 @@ def _record(args: argparse.Namespace) -> int:
 
 def _forces(args: argparse.Namespace) -> int:
     _write(forces_text(args))
+    return SOLVED
+
+
+def _export(args: argparse.Namespace) -> int:
+    _write(export_text(args))
+    return SOLVED
+
+
+def _compare(args: argparse.Namespace) -> int:
+    _write(compare_text(args))
+    return SOLVED
+
+
+def _recorded_scenario(args: argparse.Namespace) -> int:
+    _write(scenario_text(args))
     return SOLVED
 
 
@@ -258,7 +305,8 @@ def _make_writable(out: Path, made: list[Path]) -> None:
         with tempfile.TemporaryFile(dir=out):
             pass
         blocked = [out / name for name in ("solution.nc", "scenario.toml") if (out / name).is_dir()]
-        blocked += [folder for folder in (out / "models",) if folder.exists() and not folder.is_dir()]
+        models = out / "models"
+        blocked += [models] if models.is_symlink() or (models.exists() and not models.is_dir()) else []
     except OSError as error:
         raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from None
     if blocked:
@@ -266,16 +314,21 @@ def _make_writable(out: Path, made: list[Path]) -> None:
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[str], None] | None]:
-    """Give a function that shows where the solve is, on a terminal only."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.markup import escape
+def _progress() -> Iterator[Callable[[str], None]]:
+    """Give a function that shows where the solve is, on a terminal, and ends it there if an interrupt was lost."""
+    with interrupts() as found:
+        if not sys.stderr.isatty():
+            yield lambda message: found.check()
+            return
+        from rich.console import Console
+        from rich.markup import escape
 
-    with Console(stderr=True).status("loading the solver") as line:
-        yield lambda message: line.update(escape(message))
+        def show(message: str) -> None:
+            found.check()
+            line.update(escape(message))
+
+        with Console(stderr=True).status("loading the solver") as line:
+            yield show
 
 
 def _as_text(summary: dict[str, Any]) -> str:

@@ -29,6 +29,8 @@ def _shown(value: object) -> str:
         text = repr(value)
     except ValueError:  # Python refuses to write out integers of thousands of digits
         return "an integer of thousands of digits"
+    except RecursionError:
+        return "a value nested too deep to show"
     return text if len(text) <= 80 else text[:77] + "..."
 
 

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from liftopt import result_writer
+from liftopt.accuracy import Accuracy
 from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
-from liftopt.collocation.problem import Problem
-from liftopt.collocation.screen import Obstacle, screen, too_fast
+from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, Solver, SolverResult
-from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.transfer import transfer
+from liftopt.diagnosis import find
 from liftopt.multistart import solve_all
 from liftopt.plan import Plan
+from liftopt.reasons import Obstacle
+from liftopt.refinement import FINEST, SURE, finer, sharpened
+from liftopt.remedies import Remedies
 from liftopt.scenario import Scenario
 from liftopt.solution import Solution, StartRecord
 from liftopt.verify import CLOSURE_BETWEEN_KNOTS
@@ -25,9 +31,8 @@ from liftopt.workshop import Workshop
 Array = npt.NDArray[np.float64]
 Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
-SOLVING_SHARE = 0.9
-FINEST = 400
-SURE = "ipopt"  # takes over where another solver finds nothing
+SOLVING_SHARE = 0.7
+WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
 
 
 def lift(
@@ -53,7 +58,7 @@ def lift(
             progress(line)
 
     search = Search(scenario, workshop or Workshop(), RestToRestSpline(scenario.solver.intervals), say)
-    solution = search.solution(search.best())
+    solution = search.explained(search.sharpened(search.best()))
     if out is not None:
         say("writing the result")
         result_writer.save(solution, out)
@@ -69,6 +74,8 @@ class Search:
         self.scenario, self.workshop, self.say = scenario, workshop, say
         self.notes: list[str] = []
         self.records: list[StartRecord] = []
+        self.plans: list[Plan] = []  # of the latest mesh, the best first
+        self.accuracy: Accuracy | None = None
         self._on(spline)
         self.postures = workshop.postures(self.problem, say)
         if not all(kernel.compiled for kernel in self.problem.team.kernels):
@@ -76,12 +83,20 @@ class Search:
         # Compiling is done once in a lifetime; the limit is on what comes after, with time left to verify and write.
         self.prepared = time.monotonic()
         self.deadline = self.prepared + SOLVING_SHARE * scenario.solver.time_limit
+        self.end = self.prepared + WORKING_SHARE * scenario.solver.time_limit
+        self.obstacles: tuple[Obstacle, ...] = ()
+        self.nearest: list[Array] = []
 
     def best(self) -> Plan:
         """Return the best verified plan, on a finer mesh if it takes one, or the best iterate and why it is none."""
         plan = self.run()
         while plan.refinable and self.spline.intervals * 2 <= FINEST and time.monotonic() < self.deadline:
+            gap, coarse = plan.verification.check("closure between knots").value, self.spline.intervals
             plan = self.refine(plan)
+            self.notes.append(
+                f"mesh refined from N = {coarse} to {self.spline.intervals}: "
+                f"closure between knots was {1e3 * gap:.2f} mm, {1e3 * CLOSURE_BETWEEN_KNOTS:g} mm is allowed"
+            )
         return plan
 
     def run(self) -> Plan:
@@ -99,20 +114,29 @@ class Search:
         return self._solved([*starts, naive_start(self.problem)][: options.starts])
 
     def refine(self, plan: Plan) -> Plan:
-        """Return the plan that comes of another, whose closure between knots is too wide, on twice the intervals."""
-        gap, coarse, was = plan.verification.check("closure between knots").value, self.spline, self.problem
-        self._on(RestToRestSpline(2 * coarse.intervals))
-        self.notes.append(
-            f"mesh refined from N = {coarse.intervals} to {self.spline.intervals}: "
-            f"closure between knots was {1e3 * gap:.2f} mm, {1e3 * CLOSURE_BETWEEN_KNOTS:g} mm is allowed"
-        )
-        return self._solved([_transfer(was, coarse, plan.result.x, self.problem, self.spline)])
+        """Return the plan that comes of another one on twice its intervals."""
+        self._on(RestToRestSpline(2 * plan.spline.intervals))
+        start = transfer(plan.problem, plan.spline, plan.result.x, self.problem, self.spline)
+        return finer(self, [plan]) or self._solved([Start("refined", start)])
+
+    def sharpened(self, plan: Plan) -> Plan:
+        """Return the plan on a mesh as fine as the scenario asks for, and find out how accurate it is."""
+        if plan.solved:
+            plan, self.accuracy = sharpened(self, plan)
+        return plan
+
+    def explained(self, best: Plan) -> Solution:
+        """Return the solution, or the best iterate with what is in the way and which changes would help."""
+        if best.solved:
+            return self.solution(best)
+        remedies = Remedies(self, self.nearest, self.end).against(self.obstacles)
+        return replace(self.solution(best), reasons=self.obstacles, remedies=remedies)
 
     def solution(self, best: Plan) -> Solution:
         """Return the solution that the best plan stands for."""
         best.verification  # noqa: B018  (its time belongs to the total)
         seconds = {"setup": self.prepared - self.began, "total": time.monotonic() - self.began}
-        return best.solution(self.records, seconds, tuple(self.notes))
+        return replace(best.solution(self.records, seconds, tuple(self.notes)), accuracy=self.accuracy)
 
     def _on(self, spline: RestToRestSpline) -> None:
         """Go to another mesh."""
@@ -126,7 +150,11 @@ class Search:
         """Return the best verified plan of all starts; IPOPT takes over where the solver of the scenario has none."""
         name, first = self.scenario.solver.name, len(self.records)
         best = self._pick(starts, self._solve(self.solvers, starts))
-        if name == SURE or best.solved or best.refinable or any(r.status == STOPPED for r in self.records[first:]):
+        if best.solved or best.refinable:
+            return best
+        best = self._eased(best, starts)
+        stopped = any(record.status == STOPPED for record in self.records[first:])
+        if name == SURE or stopped or best.solved or best.refinable or best.obstacles:
             return best
         self.say(f"the {name} solver found no solution ({self.records[first].status}): IPOPT takes over")
         before = [f" (IPOPT, after {name}: {record.status})" for record in self.records[first:]]
@@ -145,11 +173,31 @@ class Search:
             self.records.append(StartRecord(start.name, status, result.objective, result.iterations, result.seconds))
         return results
 
+    def _eased(self, best: Plan, starts: list[Start]) -> Plan:
+        """Solve from the motion that breaks least, or return it with what it breaks."""
+        self.say("looking for what is in the way")
+        first, *others = [start.x for start in starts]
+        finding = find(self.problem, [first, best.result.x, *others], self.end)
+        if finding is None:
+            return best
+        eased = Start("elastic", finding.x)
+        self.obstacles, self.nearest = finding.reasons, [finding.x]
+        if finding.reasons:
+            return self._hindered(eased, list(finding.reasons)) if finding.sure else best
+        result = self.solvers[0].solve(eased.x, deadline=self.end, problem=self.problem)
+        status = "converged" if result.converged else result.status
+        plan = self._plan(eased, result)
+        if not (plan.solved or plan.refinable):
+            return best
+        self.records.append(StartRecord(eased.name, status, result.objective, result.iterations, result.seconds))
+        return plan
+
     def _pick(self, starts: list[Start], results: list[SolverResult]) -> Plan:
         """Verify the best first; return the first that holds, or the one that is violated least."""
         self.say("verifying with Pinocchio")
         plans = [self._plan(start, result) for start, result in zip(starts, results, strict=True)]
         plans.sort(key=lambda plan: (not plan.result.converged, plan.result.objective))
+        self.plans = plans
         for plan in plans:
             if plan.solved or plan.refinable:
                 return plan
@@ -164,6 +212,7 @@ class Search:
         obstacles, (first, last) = screen(self.problem, self.scenario.solver.seed, self.deadline, self.postures)
         if obstacle := too_fast(self.problem):
             obstacles.append(obstacle)
+        self.obstacles = tuple(obstacles)
         return Start("nearest postures", blend(self.problem, first, last)), obstacles
 
     def _hindered(self, nearest: Start, obstacles: list[Obstacle]) -> Plan:
@@ -172,11 +221,3 @@ class Search:
         nothing = Multipliers(np.zeros(layout.n_x), np.zeros(constraints.linear.shape[0]))
         result = SolverResult(nearest.x, nothing, np.nan, 0, False, "infeasible", 0.0, 0.0)
         return self._plan(nearest, result, "; ".join(dict.fromkeys(obstacle.message for obstacle in obstacles)))
-
-
-def _transfer(problem: Problem, spline: RestToRestSpline, x: Array, finer: Problem, onto: RestToRestSpline) -> Start:
-    """Return the same motion on a finer mesh; exact where the finer knots hold the coarser ones."""
-    control, force = problem.unpack(x)
-    dense = np.linspace(0.0, 1.0, 8 * onto.intervals + 1)
-    fitted = np.asarray(np.linalg.lstsq(onto.basis(dense), spline.basis(dense) @ control, rcond=None)[0])
-    return Start("refined", finer.pack(fitted, interpolate_linear(force, onto.phase)))

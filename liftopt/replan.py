@@ -14,11 +14,13 @@ heights, stature, where they stand, duration, weights - is solved from there in 
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 from liftopt.collocation.kernels import Say
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.lift import Search
 from liftopt.plan import Plan
+from liftopt.refinement import estimate
 from liftopt.scenario import Scenario
 from liftopt.solution import Solution, StartRecord
 from liftopt.workshop import Workshop
@@ -37,10 +39,15 @@ class Replanner:
         latest: the plan that the next one starts from, None before the first.
     """
 
-    def __init__(self, progress: Say | None = None) -> None:
-        """Start with nothing; ``progress`` hears one line at a time of what is going on."""
+    def __init__(self, progress: Say | None = None, workshop: Workshop | None = None) -> None:
+        """Start without a plan.
+
+        Args:
+            progress: hears one line at a time of what is going on.
+            workshop: that others use too; None: one of its own.
+        """
         self.latest: Plan | None = None
-        self._workshop = Workshop()
+        self._workshop = workshop or Workshop()
         self._say = progress or (lambda line: None)
 
     def solve(self, scenario: Scenario, *, cold: bool = False) -> Solution:
@@ -59,9 +66,11 @@ class Replanner:
         if plan is not None and plan.solved:
             result, now = plan.result, time.monotonic()
             record = StartRecord(plan.start, "converged", result.objective, result.iterations, result.seconds)
-            return plan.solution([record], {"setup": 0.0, "total": now - began})
+            solution = plan.solution([record], {"setup": 0.0, "total": now - began})
+            late = began + scenario.solver.time_limit
+            return replace(solution, accuracy=estimate(self._workshop, plan, late, self._say))
         search = Search(scenario, self._workshop, RestToRestSpline(scenario.solver.intervals), self._say)
-        best = search.best()
+        best = search.sharpened(search.best())
         if best.solved:
             self.latest = best
         return search.solution(best)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,98 +9,85 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.checks import Check, Verification
+from liftopt.checks import Verification
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.model_file import read_model
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.netcdf_file import read_netcdf
+from liftopt.result_folder import MODELS, NETCDF, SCENARIO, locked, standing_result
+from liftopt.result_record import read_record
 from liftopt.scenario import Scenario, load_scenario
 from liftopt.scene import URDF_FILES, agents_of, object_of
-from liftopt.solution import Solution, StartRecord
+from liftopt.solution import Solution
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 
 Array = npt.NDArray[np.float64]
-LARGEST_FILE = 500_000_000  # bytes; a lift on 400 intervals has some 300 kB
+MOST_KNOTS = 10_000
+LARGEST_VALUE = 1e12  # in SI units; the worst iterate of a solver that failed is far below
+SAME_TIME = 1e-6  # of the duration
 
 
 def load_result(path: str | Path) -> Solution:
     """Return the solution in a result folder, or beside a ``solution.nc``.
 
-    Trajectories come from solution.nc, the models' limits from scenario.toml beside it.
+    Trajectories come from solution.nc, the models' limits from scenario.toml beside it. Nothing is written, and the
+    files are taken for what anybody may have made of them; see ``netcdf_file`` and ``model_file``.
 
     Raises:
         InputError: a file is missing, is no result of liftopt, or is damaged; it says which and why.
     """
     path = Path(path)
-    file = path if path.name.endswith(".nc") else path / "solution.nc"
-    if not file.is_file():
-        raise InputError(str(path), NO_VALUE, f"is no result: there is no file {file.name} there")
-    if file.stat().st_size > LARGEST_FILE:
-        raise InputError(str(file), NO_VALUE, f"is no result: larger than {LARGEST_FILE} bytes")
-    scenario = load_scenario(str(file.with_name("scenario.toml")))
-    data, attributes = _read(file)
+    file = path if path.name.endswith(".nc") else path / NETCDF
+    with locked(file.parent, to_write=False):
+        folder = standing_result(file.parent) if file.name == NETCDF else file.parent
+        try:
+            data, attributes = read_netcdf(folder / file.name)
+        except FileNotFoundError:
+            raise InputError(str(path), NO_VALUE, f"is no result: there is no file {file.name} there") from None
+        scenario = load_scenario(folder / SCENARIO)
+        urdfs = {name: read_model(folder / MODELS / name) for name in URDF_FILES.values()}
     try:
-        return _solution(scenario, data, attributes, file.parent)
-    except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
+        return _solution(scenario, data, attributes, urdfs)
+    except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
         why = f"{type(error).__name__}: {error}"
         raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
 
 
-def _read(file: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    import h5netcdf
-
-    try:
-        with h5netcdf.File(file, "r") as source:
-            data = {name: np.asarray(variable[...]) for name, variable in source.variables.items()}
-            return data, dict(source.attrs)
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
-        why = " ".join(str(error).split())
-        raise InputError(str(file), NO_VALUE, f"cannot be read as NetCDF-4: {why}") from None
-
-
-def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, Any], folder: Path) -> Solution:
-    record = json.loads(str(attributes["record"]))
-    urdfs = _models(folder / "models")
-    try:
-        agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
-    except ValueError as error:
-        raise InputError(str(folder / "models"), NO_VALUE, f"holds a model that cannot be read ({error})") from None
-    time = _array(data, "time", (len(data["time"]),))
+def _solution(
+    scenario: Scenario, data: dict[str, Array], attributes: dict[str, Any], urdfs: dict[str, str]
+) -> Solution:
+    record = read_record(str(attributes["record"]))
+    agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
+    time, knots, intervals = data["time"], np.size(data["time"]), int(attributes["intervals"])
+    if knots != intervals + 1 or knots > MOST_KNOTS:
+        raise ValueError(f"time has {knots} values on {intervals} intervals")
+    time = _array(data, "time", (knots,))
     if not (np.diff(time) > 0.0).all():
         raise ValueError("time does not increase")
-    knots = len(time)
+    if not np.allclose(time[[0, -1]], (0.0, scenario.duration), rtol=0.0, atol=SAME_TIME * scenario.duration):
+        raise ValueError(f"it lasts from {time[0]:g} to {time[-1]:g} s, the scenario beside it {scenario.duration:g} s")
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
-    checks = tuple(Check(**check | _numbers(check, value=np.nan, limit=np.inf)) for check in record["checks"])
     return Solution(
         scenario=scenario,
-        outcome=str(record["outcome"]),
+        outcome=record.outcome,
         time=time,
         agents=tuple(_agent(agent, data, forces[:, i]) for i, agent in enumerate(agents)),
         held=_object(held, data, forces.reshape(knots, -1)),
         urdfs=urdfs,
         objective=float(attributes["objective"]),
-        objective_terms={name: float(attributes[f"objective_{name}"]) for name in record["objective_weights"]},
-        objective_weights=record["objective_weights"],
+        objective_terms={name: float(attributes[f"objective_{name}"]) for name in record.objective_weights},
+        objective_weights=record.objective_weights,
         iterations=int(attributes["iterations"]),
-        intervals=int(attributes["intervals"]),
-        seconds=record["seconds"],
-        starts=tuple(StartRecord(**start | _numbers(start, objective=np.nan)) for start in record["starts"]),
-        kept_start=str(record["kept_start"]),
-        verification=Verification(checks, float(attributes["kkt_error"]), float(record["kkt_tolerance"])),
-        notes=tuple(record["notes"]),
+        intervals=intervals,
+        seconds=record.seconds,
+        starts=record.starts,
+        kept_start=record.kept_start,
+        verification=Verification(record.checks, float(attributes["kkt_error"]), record.kkt_tolerance),
+        notes=record.notes,
+        accuracy=record.accuracy,
+        reasons=record.reasons,
+        remedies=record.remedies,
     )
-
-
-def _models(folder: Path) -> dict[str, str]:
-    """Return the text of each URDF, by file name."""
-    texts = {}
-    for name in URDF_FILES.values():
-        try:
-            texts[name] = (folder / name).read_text(encoding="utf-8")
-        except (OSError, ValueError) as error:
-            why = error.strerror if isinstance(error, OSError) else error
-            raise InputError(
-                str(folder / name), NO_VALUE, f"cannot be read, and belongs to the result: {why}"
-            ) from None
-    return texts
 
 
 def _agent(agent: Agent, data: dict[str, Any], force: Array) -> AgentTrajectory:
@@ -118,15 +104,12 @@ def _object(held: LiftedObject, data: dict[str, Any], forces: Array) -> ObjectTr
     return object_trajectory(held, pose, rate, second, forces)
 
 
-def _numbers(entry: dict[str, Any], **otherwise: float) -> dict[str, float]:
-    """Return the named entries as numbers; JSON has null for those that are not finite."""
-    return {key: missing if entry[key] is None else float(entry[key]) for key, missing in otherwise.items()}
-
-
 def _array(data: dict[str, Any], name: str, shape: tuple[int, ...]) -> Array:
     values = np.asarray(data[name], dtype=float)
     if values.shape != shape:
         raise ValueError(f"{name} has shape {values.shape}, expected {shape}")
     if not np.isfinite(values).all():
         raise ValueError(f"{name} holds values that are not finite")
+    if np.abs(values).max(initial=0.0) > LARGEST_VALUE:
+        raise ValueError(f"{name} holds values beyond {LARGEST_VALUE:g}")
     return values

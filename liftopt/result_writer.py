@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import json
-import os
 import platform
-import shutil
-import tempfile
 from dataclasses import asdict
 from importlib.metadata import version
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import liftopt
+from liftopt.accuracy import Accuracy
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.errors import InputError
+from liftopt.result_folder import MODELS, NETCDF, SCENARIO, locked, replace_result
 from liftopt.scenario import scenario_to_toml
+from liftopt.seal import sealed
 from liftopt.solution import Solution
 
 LIBRARIES = ("casadi", "pin", "numpy", "scipy", "h5netcdf")
@@ -25,63 +26,27 @@ Variable = tuple[tuple[str, ...], Any, str, str]
 
 
 def save(solution: Solution, out: Path) -> None:
-    """Write a solution into the folder ``out``: all files or none, each whole, solution.nc last.
+    """Write a solution into the folder ``out``: all files or none, each whole; see ``result_folder``.
 
     Raises:
         InputError: the folder or a file cannot be written.
     """
+    files = {f"{MODELS}/{name}": text.encode() for name, text in solution.urdfs.items()}
+    files |= {SCENARIO: scenario_to_toml(solution.scenario).encode(), NETCDF: sealed(_netcdf(solution))}
     try:
-        (out / "models").mkdir(parents=True, exist_ok=True)
-        # Staged beside the targets, so that the renames stay on one file system.
-        with tempfile.TemporaryDirectory(dir=out, prefix=".writing-") as work:
-            staged: dict[Path, Path] = {}
-            for name, text in solution.urdfs.items():
-                staged[out / "models" / name] = _write(Path(work) / name, text)
-            staged[out / "scenario.toml"] = _write(Path(work) / "scenario.toml", scenario_to_toml(solution.scenario))
-            netcdf = Path(work) / "solution.nc"
-            _write_netcdf(solution, netcdf)
-            staged[out / "solution.nc"] = netcdf
-            for source in staged.values():
-                _flush(source)
-            _move(staged, Path(work))
+        out.mkdir(parents=True, exist_ok=True)
+        with locked(out, to_write=True):
+            replace_result(out, files)
     except OSError as error:
         raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from error
 
 
-def _write(path: Path, text: str) -> Path:
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
-def _flush(path: Path) -> None:
-    with path.open("rb") as file:
-        os.fsync(file.fileno())
-
-
-def _move(staged: dict[Path, Path], work: Path) -> None:
-    """Move each file to its target, or none: what stood there before comes back if a move fails."""
-    before: list[tuple[Path, Path | None]] = []
-    try:
-        for i, (target, source) in enumerate(staged.items()):
-            older = work / f"older-{i}" if target.exists() else None
-            if older is not None:
-                shutil.copyfile(target, older)
-            before.append((target, older))
-            os.replace(source, target)
-    except BaseException:  # a Ctrl-C too
-        for target, older in before:
-            if older is None:
-                target.unlink(missing_ok=True)
-            else:
-                shutil.move(older, target)
-        raise
-
-
-def _write_netcdf(solution: Solution, path: Path) -> None:
+def _netcdf(solution: Solution) -> bytes:
     import h5netcdf
     import h5py
 
-    with h5netcdf.File(path, "w") as file:
+    content = BytesIO()
+    with h5netcdf.File(content, "w") as file:
         for name, labels in _coordinates(solution).items():
             file.dimensions[name] = len(labels)
             text = file.create_variable(name, (name,), dtype=h5py.string_dtype())
@@ -95,6 +60,7 @@ def _write_netcdf(solution: Solution, path: Path) -> None:
             variable.attrs["long_name"] = meaning
         for key, value in _attributes(solution).items():
             file.attrs[key] = value
+    return content.getvalue()
 
 
 def _coordinates(solution: Solution) -> dict[str, tuple[str, ...]]:
@@ -159,7 +125,15 @@ def record(solution: Solution) -> dict[str, Any]:
         ],
         "kkt_tolerance": solution.verification.kkt_tolerance,
         "notes": solution.notes,
+        "accuracy": None if solution.accuracy is None else accuracy_record(solution.accuracy),
+        "reasons": [asdict(reason) | {"amount": _finite(reason.amount)} for reason in solution.reasons],
+        "remedies": [asdict(remedy) for remedy in solution.remedies],
     }
+
+
+def accuracy_record(accuracy: Accuracy) -> dict[str, Any]:
+    """Return an accuracy ready for JSON; what could not be estimated is None."""
+    return {key: _finite(value) if isinstance(value, float) else value for key, value in asdict(accuracy).items()}
 
 
 def _finite(value: float) -> float | None:
@@ -182,4 +156,12 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "record": json.dumps(record(solution), allow_nan=False),
     }
     attributes |= {f"objective_{name}": value for name, value in solution.objective_terms.items()}
+    if (accuracy := solution.accuracy) is not None:
+        attributes |= {
+            "closure_between_knots": accuracy.closure,
+            "balance_between_knots": accuracy.balance,
+            "torque_excess_between_knots": accuracy.torque_excess,
+            "objective_limit": accuracy.objective_limit,
+            "objective_error": accuracy.objective_error,
+        }
     return attributes | {f"{name}_seconds": value for name, value in solution.seconds.items()}

@@ -15,7 +15,8 @@ from typing import Annotated, Any
 import tomli_w
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.scenario_schema import Choice, Name, Number, Whole, entries, section
+from liftopt.regular_file import read_regular
+from liftopt.scenario_schema import Choice, Name, Number, Switch, Whole, entries, section
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -23,7 +24,8 @@ else:
     import tomli as tomllib
 
 SHIPPED = Path(__file__).parent / "scenarios"
-LARGEST_FILE = 1_000_000  # bytes; a scenario has some 30 lines
+LARGEST_FILE = 100_000  # bytes; a scenario has some 30 lines
+MOST_DOTS = 200  # in a line; the longest key has two
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,10 +66,14 @@ class Table:
 
 @dataclass(frozen=True, kw_only=True)
 class GraspPose:
-    """Where the level object is at one end of the motion; ``human_distance`` None is "free" in a file."""
+    """Where the object is at one end of the motion; ``human_distance`` None is "free" in a file.
 
-    height: Annotated[float, Number("height of both grasp points above the floor", "m", 0.05, 2.2)]
+    A tilted object has ``height`` midway between its grasp points; ``human_distance`` is that of the human's.
+    """
+
+    height: Annotated[float, Number("height of the grasp points above the floor, midway if tilted", "m", 0.05, 2.2)]
     human_distance: Annotated[float | None, Number("human grasp ahead of the feet", "m", 0.0, 2.0, word="free")]
+    pitch_deg: Annotated[float, Number("tilt of the object, above 0 with the robot's edge lower", "deg", -60, 60)] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +119,17 @@ class Solver:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Refine:
+    """Whether N is doubled, up to 400 and as long as time is left, until all of these hold."""
+
+    on: Annotated[bool, Switch("refine the mesh")] = False
+    objective_error: Annotated[float, Number("estimated error of the objective, share of it", "", 1e-4, 1.0)] = 0.02
+    closure: Annotated[float, Number("distance of the grasps between knots", "m", 1e-7, 1e-3)] = 1e-4
+    balance: Annotated[float, Number("residual of the object's balance between knots", "N, Nm", 1e-4, 100.0)] = 0.1
+    torque_excess: Annotated[float, Number("torque above its limit between knots", "Nm", 1e-4, 100.0)] = 0.1
+
+
+@dataclass(frozen=True, kw_only=True)
 class Scenario:
     """One lift to be solved. An invalid one cannot be made: every value is checked on construction.
 
@@ -130,6 +147,7 @@ class Scenario:
     objective: Objective = field(default_factory=Objective)
     limits: Limits = field(default_factory=Limits)
     solver: Solver = field(default_factory=Solver)
+    refine: Refine = field(default_factory=Refine)
 
     def __post_init__(self) -> None:
         for key, kind, _, _ in entries(Scenario):
@@ -138,6 +156,10 @@ class Scenario:
         if not any(weights.values()):
             raise InputError("objective", weights, "at least one weight must be above 0")
         for end in ("start", "end"):
+            pitch, most = getattr(self.task, end).pitch_deg, self.limits.table_pitch_deg
+            if abs(pitch) > most:
+                allowed = f"must be from {-most:g} to {most:g} deg, or raise limits.table_pitch_deg"
+                raise InputError(f"task.{end}.pitch_deg", pitch, allowed)
             distance: float | None = getattr(self.task, end).human_distance
             room = self.task.standing_distance - self.table.depth
             if (distance or 0.0) >= room:
@@ -216,18 +238,10 @@ def scenario_to_toml(scenario: Scenario) -> str:
 def _read(path: Path) -> str:
     shown = str(path)
     try:
-        if path.exists() and not path.is_file():  # a folder, or a device that might never end
-            raise InputError(shown, NO_VALUE, "is not a file; a scenario is a TOML file")
-        with path.open("rb") as file:
-            raw = file.read(LARGEST_FILE + 1)
+        raw = read_regular(path, LARGEST_FILE, "a scenario is a short TOML file")
     except FileNotFoundError:
         names = ", ".join(shipped_scenarios())
         raise InputError(shown, NO_VALUE, f"no such file, nor a shipped scenario ({names})") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(shown, NO_VALUE, f"cannot be read: {reason}") from None
-    if len(raw) > LARGEST_FILE:
-        raise InputError(shown, NO_VALUE, f"is larger than {LARGEST_FILE} bytes; a scenario is a short TOML file")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -239,9 +253,18 @@ def _read(path: Path) -> str:
 
 def _parse(path: Path, text: str) -> dict[str, Any]:
     try:
-        return dict(tomllib.loads(text))
+        return _toml(text)
     except (ValueError, RecursionError) as error:  # ValueError: TOMLDecodeError, or an integer of too many digits
         raise InputError(str(path), NO_VALUE, f"is not valid TOML: {error}") from None
+
+
+def _toml(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text; raises ValueError or RecursionError."""
+    # The parser takes the square of a key's parts in time: seconds for 10 000, an hour for a million.
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.count(".") > MOST_DOTS:
+            raise ValueError(f"more than {MOST_DOTS} dots (in line {number})")
+    return tomllib.loads(text)
 
 
 def _set(data: dict[str, Any], override: str) -> None:
@@ -260,7 +283,7 @@ def _set(data: dict[str, Any], override: str) -> None:
 
 def _value(text: str) -> Any:
     try:
-        parsed = tomllib.loads(f"value = {text}")
+        parsed = _toml(f"value = {text}")
     except (ValueError, RecursionError):
         return text
     return parsed["value"] if len(parsed) == 1 else text  # a line break could smuggle in a second key

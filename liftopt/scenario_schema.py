@@ -100,6 +100,20 @@ class Whole(Kind):
 
 
 @dataclass(frozen=True)
+class Switch(Kind):
+    """True or false."""
+
+    @property
+    def allowed(self) -> str:  # noqa: D102
+        return "true or false"
+
+    def accept(self, key: str, value: Any) -> bool:  # noqa: D102
+        if not isinstance(value, bool):
+            raise self.refuse(key, value)
+        return value
+
+
+@dataclass(frozen=True)
 class Choice(Kind):
     """One of a few values, of the very type listed."""
 
@@ -207,4 +221,4 @@ def _unknown(name: str, known: list[str]) -> str:
 
 def _bare(name: object) -> str:
     text = str(name)
-    return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else repr(text)
+    return text if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", text) else f"{text[:60]!r}"

@@ -54,7 +54,7 @@ def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Lif
 
 
 def task_of(scenario: Scenario) -> LiftTask:
-    """Return the task: level poses at both ends by the height of the grasp points, sideways free."""
+    """Return the task: poses at both ends by the height and tilt of the grasp points, sideways free."""
     limits, objective = scenario.limits, scenario.objective
     pitch, yaw = math.radians(limits.table_pitch_deg), math.radians(limits.table_yaw_deg)
     return LiftTask(
@@ -74,6 +74,12 @@ def task_of(scenario: Scenario) -> LiftTask:
 
 
 def _pose(grasp: GraspPose, table: Table) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return the pose of the centre of mass: half the table's height above the grasp points, half its depth ahead."""
-    ahead = np.nan if grasp.human_distance is None else grasp.human_distance + table.depth / 2
-    return np.array([ahead, np.nan, grasp.height + table.height / 2, 0.0, 0.0, 0.0])
+    """Return the pose of the centre of mass from where the grasp points are.
+
+    ``height`` is midway between them, ``human_distance`` the human's. The centre of mass lies half the table's height
+    off that middle, along the body's Z axis; half the depth, along its X axis, leads there from the human's grasp point.
+    """
+    pitch = math.radians(grasp.pitch_deg)
+    forward = (table.depth * math.cos(pitch) + table.height * math.sin(pitch)) / 2
+    ahead = np.nan if grasp.human_distance is None else grasp.human_distance + forward
+    return np.array([ahead, np.nan, grasp.height + table.height / 2 * math.cos(pitch), 0.0, pitch, 0.0])

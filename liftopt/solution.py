@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.accuracy import Accuracy
 from liftopt.checks import Verification
+from liftopt.reasons import Obstacle, Remedy
 from liftopt.scenario import Scenario
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory
 
@@ -54,6 +56,9 @@ class Solution:
         kept_start: name of the one the solution comes from.
         verification: its own verification.
         notes: what the user should know (a refined mesh, a missing compiler).
+        accuracy: how far it is from the lift in continuous time; None for what is no solution.
+        reasons: what is in the way where there is no solution, the worst first.
+        remedies: changes that make a solution possible, each solved and verified; the smallest first.
     """
 
     scenario: Scenario
@@ -72,6 +77,9 @@ class Solution:
     kept_start: str
     verification: Verification
     notes: tuple[str, ...] = ()
+    accuracy: Accuracy | None = None
+    reasons: tuple[Obstacle, ...] = ()
+    remedies: tuple[Remedy, ...] = ()
 
     @property
     def solved(self) -> bool:

@@ -7,6 +7,7 @@ load share of a body in free fall, the objective of a start that failed) is None
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,6 +65,8 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "solved": solved,
         "exit_status": 0 if solved else 3,
         "reason": None if solved else solution.status,
+        "reasons": [asdict(reason) for reason in solution.reasons],
+        "remedies": [asdict(remedy) for remedy in solution.remedies],
         "out": None if out is None else str(out),
         "scenario": scenario_to_dict(solution.scenario),
         "joints": {agent.name: _joints(solution, agent) for agent in solution.agents},
@@ -88,6 +91,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
             ],
         },
         "verification": _verification(solution),
+        "accuracy": _accuracy(solution),
         "notes": list(solution.notes),
     }
 
@@ -198,6 +202,21 @@ def _verification(solution: Solution) -> dict[str, Any]:
             }
             for check in verification.checks
         ],
+    }
+
+
+def _accuracy(solution: Solution) -> dict[str, Any] | None:
+    accuracy = solution.accuracy
+    if accuracy is None:
+        return None
+    return {
+        "closure_m": _number(accuracy.closure),
+        "balance_SI": _number(accuracy.balance),
+        "torque_excess_Nm": _number(accuracy.torque_excess),
+        "objective_limit": _number(accuracy.objective_limit),
+        "objective_error": _number(accuracy.objective_error),
+        "compared_intervals": accuracy.intervals or None,
+        "remark": accuracy.remark,
     }
 
 

@@ -27,6 +27,7 @@ def print_summary(summary: dict[str, Any], console: Console) -> None:
         _objective(summary["objective"]),
         _starts(summary["solver"]),
         _effort(summary["solver"]),
+        _accuracy(summary["accuracy"], summary["solver"]["intervals"]),
         _verification(summary["verification"]),
     ]
     for part in parts:
@@ -57,6 +58,11 @@ def _head(summary: dict[str, Any], console: Console) -> None:
     ]
     for line in lines:
         console.print(line, width=min(console.width, WIDTH), highlight=False)
+    for title, items in (("In the way", summary["reasons"]), ("With one of these it was solved", summary["remedies"])):
+        if items:
+            console.print(f"[bold]{title}:[/bold]", highlight=False)
+        for item in items:
+            console.print(f"  - {escape(item['message'])}", width=min(console.width, WIDTH), highlight=False)
 
 
 def _table(title: str, *columns: str, caption: str = "") -> Table:
@@ -176,6 +182,29 @@ def _starts(solver: dict[str, Any]) -> Table:
 def _effort(solver: dict[str, Any]) -> str:
     seconds = ", ".join(f"{name} {_general(value, 3)} s" for name, value in solver["seconds"].items())
     return f"N = {solver['intervals']}, {solver['iterations']} iterations; {seconds}"
+
+
+def _accuracy(accuracy: dict[str, Any] | None, intervals: int) -> str:
+    if accuracy is None:
+        return "Accuracy: not estimated, for this is no solution"
+    if accuracy["objective_error"] is None:
+        objective = f"error of the objective unknown: {accuracy['remark']}"
+    else:
+        objective = (
+            f"objective {_percent(accuracy['objective_error'])}% above its limit of "
+            f"{_general(accuracy['objective_limit'], 4)} on ever finer meshes (from N = "
+            f"{accuracy['compared_intervals']} and {intervals})"
+        )
+    closure, balance = _times(accuracy["closure_m"], 1e3), accuracy["balance_SI"]
+    return (
+        f"Accuracy (estimated): {escape(objective)}; between knots the grasps are up to {_short(closure)} mm apart, "
+        f"the balance is off by {_short(balance)} N or Nm, torques exceed their limits by "
+        f"{_short(accuracy['torque_excess_Nm'])} Nm"
+    )
+
+
+def _times(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value
 
 
 def _verification(verification: dict[str, Any]) -> Table:

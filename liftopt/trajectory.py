@@ -93,7 +93,7 @@ def agent_trajectory(agent: Agent, q: Array, v: Array, a: Array, force: Array) -
     tau, point, root = np.zeros_like(full_q), np.zeros((len(q), 3)), np.zeros((len(q), 6))
     slopes = np.zeros((len(q), 6, model.nv))
     for k in range(len(q)):
-        slopes[k] = pin.computeJointJacobians(model, data, full_q[k])
+        slopes[k] = pin.computeJointJacobians(model, data, full_q[k]).reshape(6, -1)  # of one joint it is flat
         point[k] = data.oMi[carrier].act(lever)
         tau[k] = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
         # The wrench that the first joint transmits holds all that moves against gravity and its own motion; what is

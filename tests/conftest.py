@@ -92,4 +92,5 @@ def solution() -> SimpleNamespace:
         kept_start="naive",
         verification=SimpleNamespace(checks=(check,), passed=True, worst=check, kkt_error=4e-7),
         notes=("mesh refined to N = 40",),
+        accuracy=None,
     )

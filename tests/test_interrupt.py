@@ -23,22 +23,6 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 from liftopt.cli import main
 sys.exit(main(["solve", "--out", sys.argv[1], "--set", "solver.starts=2"]))
 """
-# Dies, as if killed, in the n-th call of a function of the writer.
-SAVE_AND_DIE = """
-import os, signal, sys
-from liftopt import result_writer
-from liftopt.result_reader import load_result
-module, name, at = (os, "replace", int(sys.argv[3])) if sys.argv[3] != "netcdf" else (result_writer, "_flush", 0)
-usual, calls = getattr(module, name), []
-def fatal(*arguments):
-    if len(calls) == at:
-        os.kill(os.getpid(), signal.SIGKILL)
-    calls.append(None)
-    return usual(*arguments)
-solution = load_result(sys.argv[1])
-setattr(module, name, fatal)
-result_writer.save(solution, __import__("pathlib").Path(sys.argv[2]))
-"""
 
 
 def _child(code: str, *arguments: str) -> subprocess.Popen[str]:
@@ -106,15 +90,3 @@ def test_killed_solve_leaves_the_older_result_whole(after: float, solved: Callab
     run.kill()
     run.communicate(timeout=60)
     assert _contents(out) == _contents(older)
-
-
-@pytest.mark.parametrize("at", ["netcdf", "0", "4"])
-def test_killed_writer_leaves_a_whole_result(at: str, solved: Callable[..., Any], tmp_path: Path) -> None:
-    older = solved("table5_near", "solver.starts=2").folder
-    newer = solved("table5", "solver.intervals=10", "solver.starts=1").folder
-    out = Path(shutil.copytree(older, tmp_path / "result"))
-    run = _child(SAVE_AND_DIE, str(newer), str(out), at)
-    _, err = run.communicate(timeout=60)
-    assert run.returncode == -signal.SIGKILL, err
-    assert (out / "solution.nc").read_bytes() == (older / "solution.nc").read_bytes()
-    assert load_result(out).time[-1] == 2.0

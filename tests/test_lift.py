@@ -102,7 +102,7 @@ def test_coarse_mesh_is_refined_and_that_is_said(solved: Callable[..., Any]) -> 
     assert solution.scenario.solver.intervals == 10
     assert solution.intervals in (20, 40)
     assert len(solution.time) == solution.intervals + 1
-    assert solution.starts[-1].name == solution.kept_start == "refined"
+    assert solution.starts[-1].name == solution.kept_start == f"posture pair 1, N = {solution.intervals}"
     assert any(note.startswith("mesh refined from N = 10 to 20: closure between knots was") for note in solution.notes)
 
 
@@ -163,4 +163,4 @@ def test_time_for_compiling_is_not_taken_from_the_limit(monkeypatch: pytest.Monk
     monkeypatch.setattr(workshop, "Banded", lambda *_: time.sleep(1.0))
     scenario = load_scenario("table5", ["solver.name=banded", "solver.time_limit=10"])
     search = Search(scenario, workshop.Workshop(), RestToRestSpline(8), lambda line: None)
-    assert search.deadline - time.monotonic() == pytest.approx(9.0, abs=0.5)
+    assert search.end - time.monotonic() == pytest.approx(9.0, abs=0.5)

@@ -39,8 +39,8 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
         "table": {"mass": 2.0, "depth": 0.45, "width": 0.31, "height": 0.02},
         "task": {
             "standing_distance": 1.9,
-            "start": {"height": 0.9, "human_distance": 0.40},
-            "end": {"height": 1.4, "human_distance": 0.40},
+            "start": {"height": 0.9, "human_distance": 0.40, "pitch_deg": 0.0},
+            "end": {"height": 1.4, "human_distance": 0.40, "pitch_deg": 0.0},
         },
         "objective": {"human_weight": 1.0, "robot_weight": 1.0, "acceleration_weight": 0.5, "force_weight": 0.01},
         "limits": {
@@ -58,6 +58,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "workers": 1,
             "time_limit": 50.0,
         },
+        "refine": {"on": False, "objective_error": 0.02, "closure": 1e-4, "balance": 0.1, "torque_excess": 0.1},
     }
 
 
@@ -72,7 +73,7 @@ def test_shipped_scenarios_differ_in_the_reading_of_table_5_only() -> None:
 
 def _required_only() -> dict[str, object]:
     data = scenario_to_dict(DEFAULT)
-    for section in ("objective", "limits", "solver", "name"):
+    for section in ("objective", "limits", "solver", "refine", "name"):
         del data[section]
     del data["robot"]["base_height"], data["robot"]["tool"]
     return data
@@ -129,12 +130,13 @@ NUMBERS = [(key, kind) for key, kind in LEAVES if isinstance(kind, (Number, Whol
 
 @pytest.mark.parametrize(("key", "kind"), NUMBERS, ids=[key for key, _ in NUMBERS])
 def test_every_number_refuses_all_but_finite_numbers_in_its_range(key: str, kind: Number | Whole) -> None:
-    bad = ["nan", "inf", "-inf", "true", '"1"', "[1.0]", "{}", "1979-05-27", f"{2 * kind.high + 1!r}", "-0.001"]
+    bad = ["nan", "inf", "-inf", "true", '"1"', "[1.0]", "{}", "1979-05-27", f"{2 * kind.high + 1!r}", f"{kind.low - 1e-3!r}"]
     for value in bad:
         with pytest.raises(InputError, match=f"^{re.escape(key)} = .*: must be a (whole )?number") as caught:
             with_overrides(DEFAULT, [f"{key}={value}"])
         assert "\n" not in str(caught.value)
-    with_overrides(DEFAULT, ["task.standing_distance=4", "objective.human_weight=1", f"{key}={kind.high!r}"])
+    others = ["task.standing_distance=4", "objective.human_weight=1", "limits.table_pitch_deg=60"]
+    with_overrides(DEFAULT, [*others, f"{key}={kind.high!r}"])
 
 
 @pytest.mark.parametrize("statement", ["human.stature=1.2", "human.stature=2.2", "table.mass=0.05", "table.mass=50"])
@@ -175,6 +177,10 @@ def test_whole_numbers_are_taken_where_numbers_are_and_kept_as_floats() -> None:
         ("table.mass=3kg", "^table.mass = '3kg': must be a number from 0.05 to 50 kg"),
         ("table.mass=3\nduration=1", "^table.mass = "),
         ("task.start.human_distance=1.5", "must be below 1.45 m, or the object reaches behind the robot's base"),
+        (
+            "task.end.pitch_deg=11",
+            r"^task\.end\.pitch_deg = 11.0: must be from -10 to 10 deg, or raise ",
+        ),
         ("task.start.human_distance=far", 'must be a number from 0 to 2 m, or "free"'),
         ("table.mass=0x" + "f" * 5000, "^table.mass = an integer of thousands of digits: must be"),
     ],
@@ -203,10 +209,10 @@ def test_an_invalid_scenario_cannot_be_made_in_python_either() -> None:
         (b"\xff\xfe\x00s", "is not UTF-8 text"),
         (b"schema = 1\n\0", "is a binary file"),
         (b"schema = = 1", "is not valid TOML"),
-        (b"schema = " + b"[" * 200_000, "is not valid TOML"),
+        (b"schema = " + b"[" * 50_000, "is not valid TOML"),
         (b"schema = " + b"9" * 5000, "is not valid TOML"),
         (b"schema = 1\nschema = 1", "is not valid TOML"),
-        (b"#" * 1_000_001, "is larger than 1000000 bytes"),
+        (b"#" * 100_001, "is larger than 100000 bytes"),
         (b"", "schema: is missing"),
     ],
 )

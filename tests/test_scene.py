@@ -55,6 +55,22 @@ def test_poses_put_the_grasp_points_where_the_scenario_says() -> None:
     np.testing.assert_allclose(points, [[0.4, 0.0, 1.0], [1.0, 0.0, 1.0]], atol=1e-12)
 
 
+@pytest.mark.parametrize("pitch", [-9.0, 4.0])
+def test_a_tilted_object_has_its_grasp_points_about_the_height_and_the_robots_edge_lower_if_positive(
+    pitch: float,
+) -> None:
+    """The human's grasp is as far ahead as was asked; depth x sine apart in height, with the height midway."""
+    scenario = load_scenario("table5", ["table.depth=0.6", "table.height=0.1", f"task.end.pitch_deg={pitch}"])
+    end, table = task_of(scenario).end, object_of(scenario)
+    turn = pin.Quaternion(pin.rpy.rpyToMatrix(0.0, np.radians(pitch), 0.0)).coeffs()
+    data = table.model.createData()
+    pin.framesForwardKinematics(table.model, data, np.array([end[0], 0.0, end[2], *turn]))
+    human, robot = (data.oMf[table.model.getFrameId(frame)].translation for frame in table.grasp_frames)
+    assert human[0] == pytest.approx(0.4, abs=1e-12)
+    assert (human[2] + robot[2]) / 2 == pytest.approx(1.4, abs=1e-12)
+    assert human[2] - robot[2] == pytest.approx(0.6 * np.sin(np.radians(pitch)), abs=1e-12)
+
+
 def test_limits_and_weights_are_passed_on_in_the_tasks_units() -> None:
     entries = [
         "limits.table_pitch_deg=12", "limits.table_yaw_deg=7", "limits.max_grasp_force=150",

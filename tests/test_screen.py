@@ -11,9 +11,10 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.screen import Obstacle, screen, too_fast
+from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.multibody.agent import HalfSpace
+from liftopt.reasons import Obstacle
 from liftopt.scenario import load_scenario
 from liftopt.scene import agents_of, object_of, task_of
 

@@ -43,8 +43,23 @@ class KktError:
         return max(self.stationarity, self.violation, self.complementarity)
 
 
-def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
-    """Return the KKT error of a point of a problem, all functions evaluated by Pinocchio."""
+@dataclass(frozen=True)
+class FirstOrder:
+    """What the first-order conditions are made of, at a point.
+
+    Attributes:
+        gradient: (n_x,) of the Lagrangian.
+        g: (n_g,) values of the constraint rows.
+        objective: value of the objective.
+    """
+
+    gradient: Array
+    g: Array
+    objective: float
+
+
+def first_order(problem: Problem, x: Array, multipliers: Multipliers) -> FirstOrder:
+    """Return gradient of the Lagrangian, rows and objective at a point of a problem, all evaluated by Pinocchio."""
     constraints, weights, period = problem.constraints, problem.mesh.weights, problem.task.duration
     gradient, objective = multipliers.x + constraints.linear.T @ multipliers.g, 0.0
     pulls, outputs = constraints.combine.T @ multipliers.g, []
@@ -59,8 +74,13 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
         by_y = turned(jacobian.swapaxes(1, 2), by_c) + 2 * weights[:, None] * y * y_weight
         gradient += part.select.T @ by_y.ravel()
         outputs.append(c.ravel())
-    g = constraints.combine @ np.concatenate(outputs) + constraints.linear @ x
+    return FirstOrder(gradient, constraints.combine @ np.concatenate(outputs) + constraints.linear @ x, objective)
 
+
+def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
+    """Return the KKT error of a point of a problem, all functions evaluated by Pinocchio."""
+    constraints, at = problem.constraints, first_order(problem, x, multipliers)
+    gradient, g = at.gradient, at.g
     lower, upper = problem.bounds()
     free = upper > lower
     outside = np.abs(x - np.clip(x, lower, upper))
@@ -79,7 +99,7 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
         # np.max, unlike max, keeps a NaN.
         violation=float(np.max(np.concatenate([[0.0], all_lower - values, values - all_upper, outside]))),
         complementarity=float(max(p.max(initial=0.0) for p in products)) / s_c,
-        objective=objective,
+        objective=at.objective,
     )
 
 

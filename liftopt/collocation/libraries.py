@@ -4,21 +4,27 @@ A library is found by its key, a digest of all that it is made from. It carries 
 renaming, whole or not at all, and is looked at only where nobody but its owner can write: the user's own cache, and
 the package itself, whose folder is trusted as far as its code is. The package comes first; what was installed with it
 needs no folder of the user's.
+
+Between the look and the loading nobody else can put another file in its place: a cache folder is held open, and its
+files are reached through it rather than by its path, which may lead through folders where others can rename things.
+Files there that are links are not followed. What the user's own processes might do to the user's files is not guarded
+against, since they could do anything else too.
 """
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
+import stat
 import tempfile
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TypeVar
 
-DIGEST_BYTES = 32
+from liftopt.seal import is_sealed, sealed
+
 # What no run has loaded for this long goes when something new is compiled: versions that are no longer installed.
 UNUSED_DAYS = 90.0
 LIBRARY_NAME = re.compile(r"[0-9a-f]{32}\.so")
@@ -38,11 +44,11 @@ def find_library(key: str, open_library: Callable[[Path], Opened | None]) -> Ope
     shipped, cache = PACKAGE / "kernels" / f"{key}.so", cache_folder()
     if (opened := _open(shipped, open_library, PACKAGE)) is not None or cache is None:
         return opened
-    path = cache / f"{key}.so"
-    opened = _open(path, open_library)
-    if opened is not None:
-        with suppress(OSError):
-            os.utime(path)  # in use
+    with _held(cache) as folder:
+        opened = _open_private(folder / f"{key}.so", open_library)
+        if opened is not None:
+            with suppress(OSError):
+                os.utime(folder / f"{key}.so")  # in use
     return opened
 
 
@@ -71,8 +77,33 @@ def keep(built: Path, folder: Path | None, open_library: Callable[[Path], Opened
     _seal(built)
     if folder is None:
         return _open(built, open_library)
-    _drop_unused(folder)
-    return _open(_publish(built, folder / built.name), open_library)
+    with _held(folder) as held:
+        _drop_unused(held)
+        return _open_private(_publish(built, held / built.name), open_library)
+
+
+@contextmanager
+def _held(folder: Path) -> Iterator[Path]:
+    """Hold a folder open and give a path that stays this very folder, whatever is renamed on the way to it."""
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError:  # it is gone, or this system opens no folders
+        yield folder
+        return
+    held = Path(f"/proc/self/fd/{descriptor}")
+    try:
+        yield held if held.exists() else folder
+    finally:
+        os.close(descriptor)
+
+
+def _open_private(path: Path, open_library: Callable[[Path], Opened | None]) -> Opened | None:
+    """Open a library if it is a file, no link, in a folder where only the user can write."""
+    try:
+        private = _is_trusted(path.parent) and stat.S_ISREG(path.lstat().st_mode)
+    except OSError:
+        return None
+    return _open(path, open_library) if private else None
 
 
 def _open(path: Path, open_library: Callable[[Path], Opened | None], owner: Path | None = None) -> Opened | None:
@@ -92,15 +123,13 @@ def _is_trusted(path: Path, owner: Path | None = None) -> bool:
 
 
 def _is_sealed(path: Path) -> bool:
-    content = path.read_bytes()
-    return hashlib.sha256(content[:-DIGEST_BYTES]).digest() == content[-DIGEST_BYTES:]
+    return is_sealed(path.read_bytes())
 
 
 def _seal(path: Path) -> None:
-    """Append the digest of the file's bytes, which a loader of shared libraries ignores, and make it private."""
+    """Append the seal, which a loader of shared libraries ignores, and make the file private."""
     path.chmod(0o600)
-    with path.open("ab") as file:
-        file.write(hashlib.sha256(path.read_bytes()).digest())
+    path.write_bytes(sealed(path.read_bytes()))
 
 
 def _publish(built: Path, target: Path) -> Path:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.postures import Posture, PostureSolver, distinct, seed_coordinates
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.reasons import Obstacle
 from liftopt.trajectory import agent_trajectory
 
 Array = npt.NDArray[np.float64]
@@ -23,29 +24,12 @@ MORE_ITERATIONS = 400
 STRONGEST = 64.0
 # Postures that differ by less in every joint [rad] are one; so many of them are tried further.
 DIFFERENT, NEAREST = 0.1, 6
+# Limits used as much as the tightest, to this share, are named with it.
+AS_TIGHT = 0.98
 # Ratio of the strengths at which the bisection ends.
 PRECISION = 1.01
 # A joint beyond its range by less than this is not named [rad].
 NOTICEABLE = 0.01
-
-
-@dataclass(frozen=True)
-class Obstacle:
-    """What is in the way.
-
-    Attributes:
-        constraint: ``"closure"``, ``"keep_in"``, ``"torque"``, ``"grasp_force"`` or ``"velocity"``.
-        who: agent, joint or object.
-        amount: how far it is from being met, in ``unit``.
-        unit: of ``amount``; ``"times the limit"`` for strength.
-        message: one sentence.
-    """
-
-    constraint: str
-    who: str
-    amount: float
-    unit: str
-    message: str
 
 
 def too_fast(problem: Problem) -> Obstacle | None:
@@ -62,7 +46,8 @@ def too_fast(problem: Problem) -> Obstacle | None:
         f"too fast: the {held} would exceed its speed limit along {which}; "
         f"the lift must last at least {shortest:.2f} s, not {task.duration:g} s"
     )
-    return Obstacle("velocity", held, shortest - task.duration, "s", text)
+    beyond = shortest / task.duration - 1.0
+    return Obstacle("velocity", held, shortest - task.duration, "s", text, share=beyond)
 
 
 def screen(
@@ -83,7 +68,8 @@ def screen(
         obstacle, posture = _screen_end(problem, solver, name, pose, np.random.default_rng(seed), deadline)
         postures.append(posture)
         if obstacle is not None:
-            obstacles.append(obstacle)
+            when = 0.0 if name == "start" else problem.task.duration
+            obstacles.append(replace(obstacle, time=when, static=True))
     return obstacles, postures
 
 
@@ -168,10 +154,14 @@ def _strength(
             return None, posture
     if strong <= 1.0 or time.monotonic() > deadline:
         return None, held
-    _, constraint, who = _tightest(problem, held)
-    what = "torque limit of" if constraint == "torque" else "grasp force cap of"
-    text = f"too weak at the {name} of the lift: holding still needs about {strong:.2f} times the {what} {who}"
-    return Obstacle(constraint, who, strong, "times the limit", text), held
+    tight = [use for use in _uses(problem, held) if use[0] > AS_TIGHT * _tightest(problem, held)[0]]
+    # Where several leave no room, none is enough alone; joints are named first.
+    tight.sort(key=lambda use: (use[1] != "torque", -use[0]))
+    _, constraint, who = tight[0]
+    words = {"torque": "the torque limit of", "grasp_force": "the grasp force cap of"}
+    what = " and ".join(f"{words[kind]} {whose}" for _, kind, whose in tight)
+    text = f"too weak at the {name} of the lift: holding still needs about {strong:.2f} times {what}"
+    return Obstacle(constraint, who, strong, "times the limit", text, share=strong - 1.0), held
 
 
 def _hold(postures: PostureSolver, pose: Array, seeds: list[Array], deadline: float) -> Posture | None:
@@ -192,6 +182,11 @@ def _stronger(problem: Problem, factor: float) -> PostureSolver:
 
 def _tightest(problem: Problem, posture: Posture) -> tuple[float, str, str]:
     """Return how many times its limit is used by what leaves the least room in a posture, the constraint, and whose."""
+    return max(_uses(problem, posture))
+
+
+def _uses(problem: Problem, posture: Posture) -> list[tuple[float, str, str]]:
+    """Return how many times each limit is used in a posture, the constraint, and whose."""
     candidates = []
     for i, agent in enumerate(problem.team.agents):
         q = posture.coordinates[None, problem.layout.columns(i)]
@@ -201,4 +196,4 @@ def _tightest(problem: Problem, posture: Posture) -> tuple[float, str, str]:
         share = np.where(tau > 0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
         candidates += [(float(s), "torque", joint) for s, joint in zip(share, agent.moving_joints, strict=True)]
         candidates.append((float(np.linalg.norm(force)) / problem.task.max_grasp_force, "grasp_force", agent.name))
-    return max(candidates)
+    return candidates

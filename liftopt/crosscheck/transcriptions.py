@@ -24,7 +24,8 @@ from liftopt.collocation.motion import Motion, motion_at
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
-from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
 from liftopt.interpolation import refined
@@ -121,9 +122,9 @@ def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Prob
     dense = refined(solution, max(4, 4 * intervals // solution.intervals))
     coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.held.pose])
     phase = dense.time / dense.time[-1]
-    control = np.asarray(np.linalg.lstsq(spline.basis(phase), coordinates, rcond=None)[0], dtype=np.float64)
-    force = interpolate_linear(np.hstack([agent.grasp_force for agent in solution.agents]), spline.phase)
-    return problem, spline, Ipopt(problem).solve(problem.pack(control, force), deadline=np.inf)
+    force = np.hstack([agent.grasp_force for agent in solution.agents])
+    start = nearest(problem, spline, phase, coordinates, force)
+    return problem, spline, Ipopt(problem).solve(start, deadline=np.inf)
 
 
 def points_of(motion: Motion, at: Coordinates) -> Points:

@@ -1,11 +1,12 @@
 """Sawyer's joint trajectory action server, and what its modes ask of the arm at 100 Hz.
 
-Read from the manufacturer's intera_sdk, commit 6614dec (Apache-2.0): intera_joint_trajectory_action, its minjerk.py and
-the defaults in intera_interface/cfg. The server knows three modes; ``torque`` is a client of the arm's torque interface
-that streams the solved torques at 1 kHz, with the springs of intera_examples' joint_torque_springs.py at their stiffest.
+Read from the manufacturer's intera_sdk, commit 6614dec (Apache-2.0): intera_joint_trajectory_action, its minjerk.py
+and the defaults in intera_interface/cfg. The server knows three modes; ``torque`` is a client of the arm's torque
+interface that streams the solved torques at 1 kHz, with the springs of joint_torque_springs.py at their stiffest.
 
-- ``velocity``: velocity = kp (planned - measured position), kp = 2 /s, no integral, no feed-forward, no tolerance. The
-  arm is late by 1/kp = 0.5 s. When the goal time is over the server commands zero velocity wherever the arm is.
+- ``velocity``: velocity = kp (planned - measured position), kp = 2 /s, no integral, no feed-forward, no tolerance. In
+  steady motion the arm is 1/kp = 0.5 s late. When the goal time is over the server commands zero velocity, wherever
+  the arm is.
 - ``position``: the planned position; the arm goes there at no more than 0.3 of each joint's top speed unless told
   otherwise (set_joint_position_speed). The server gives up where a joint is 0.2 rad off.
 - ``position_w_id``, its default: position, velocity and acceleration, which the arm feeds forward; 0.2 rad as well.
@@ -54,9 +55,7 @@ class Command:
 class ActionServer:
     """The server following one trajectory, in the trajectory's joint signs."""
 
-    def __init__(
-        self, mode: Mode, trajectory: JointTrajectory, goal_time: float, torque: Array | None = None
-    ) -> None:
+    def __init__(self, mode: Mode, trajectory: JointTrajectory, goal_time: float, torque: Array | None = None) -> None:
         """Take a goal.
 
         Args:
@@ -66,7 +65,8 @@ class ActionServer:
             torque: (K, 7) for ``torque``: what to stream, less gravity, at the points of the trajectory [Nm].
         """
         self.mode = mode
-        self.outcome = "followed to the end"
+        self.outcome = "streamed to the end" if mode == "torque" else "followed to the end"
+        self.gave_up = False
         self._end = float(trajectory.time[-1]) + goal_time
         self._tolerance = PATH_TOLERANCE[mode]
         self._names = trajectory.names
@@ -83,7 +83,8 @@ class ActionServer:
 
         Args:
             time: since the trajectory's start, 0 or later [s].
-            position, velocity: (7,) measured.
+            position: (7,) measured [rad].
+            velocity: (7,) measured [rad/s].
             reference: (7,) of the arm's servo [rad].
         """
         none = np.zeros(7)
@@ -98,11 +99,11 @@ class ActionServer:
         late = time >= self._end
         if late or abs(error[worst]) >= self._tolerance:
             self._running = False
-            if not late:
+            self.gave_up = not late
+            if self.gave_up:
                 self.outcome = f"gave up at {time:.2f} s: {self._names[worst]} {error[worst]:+.3f} rad off"
-            # Both ends of the server: zero velocity, or the present position as the target.
-            hold = none if self.mode == "velocity" else (position - reference) / PERIOD
-            return Command(np.clip(hold, -self._top, self._top), none, none)
+            # The server's last command is zero velocity, or the present position: the reference stays.
+            return Command(none, none, none)
         if self.mode == "velocity":
             return Command(np.clip(KP * error, -self._top, self._top), none, none)
         if self.mode == "position":

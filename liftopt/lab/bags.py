@@ -11,7 +11,7 @@ from liftopt.lab.ros_messages import RosMessages
 
 Kind = Literal["ros1", "ros2", "mcap"]
 SUFFIX: dict[Kind, str] = {"ros1": ".bag", "ros2": "_ros2", "mcap": "_mcap"}  # of a file, of a folder, of a folder
-METADATA_VERSION = 9  # that ROS 2 Humble and later read
+METADATA_VERSION: Literal[9] = 9  # that ROS 2 Humble and later read
 
 
 class Record(NamedTuple):
@@ -43,9 +43,7 @@ def write_bag(path: Path, kind: Kind, messages: RosMessages, records: Iterable[R
         connections: dict[str, Any] = {}
         for record in records:
             if record.topic not in connections:
-                connections[record.topic] = writer.add_connection(
-                    record.topic, record.kind, typestore=messages.store
-                )
+                connections[record.topic] = writer.add_connection(record.topic, record.kind, typestore=messages.store)
             writer.write(connections[record.topic], record.stamp, messages.serialized(record.message, record.kind))
     return path
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.errors import InputError
+from liftopt.errors import ModelError
 from liftopt.interpolation import refined
 from liftopt.lab.action_server import PERIOD, ActionServer, Command, Mode
 from liftopt.lab.joint_trajectory import JointTrajectory, joint_trajectory
@@ -26,7 +26,9 @@ from liftopt.solution import Solution
 Array = npt.NDArray[np.float64]
 BEFORE, AFTER = 0.5, 0.5  # recorded before the goal is sent and after the server is done [s]
 TICKS = round(PERIOD / STEP)
-AHEAD = 0.1  # [s]: as far as an arm gets ahead of its plan in a tick, many times over
+RUNAWAY = 50.0  # [rad/s]: ten times what a joint can do; MuJoCo itself would start again at its own zero
+AHEAD = 0.1  # [s]: how far along the plan an arm is sought from where it was a tick before
+FASTEST = 2.0  # seconds of the plan in a second: an arm that is late cuts corners, the person's force does not jump
 # Estimates: no figures are published for Sawyer. Half the width of what differs between trials, and the noise (one
 # standard deviation) of what the arm reports.
 FRICTION_SPREAD = 0.2  # of each joint's friction
@@ -47,6 +49,7 @@ class Trial:
         tip: (K, 3) where the gripper's grasp point was in the world [m].
         measured_position, measured_velocity, measured_torque: (K, 7) what the arm reported: noise added.
         outcome: how the server ended, in words.
+        gave_up: whether it did before the end.
     """
 
     position: Array
@@ -56,6 +59,7 @@ class Trial:
     measured_velocity: Array
     measured_torque: Array
     outcome: str
+    gave_up: bool
 
 
 @dataclass(frozen=True)
@@ -103,11 +107,13 @@ def dry_run(
 
     Raises:
         InputError: the solution is not solved, or MuJoCo is not installed.
+        ModelError: the arm runs away.
     """
     trajectory = joint_trajectory(solution)
     plan = _Plan.of(solution)
     duration = float(trajectory.time[-1])
-    time = np.arange(-round(BEFORE / PERIOD), round((duration + goal_time + AFTER) / PERIOD) + 1) * PERIOD
+    first, last = -round(BEFORE / PERIOD), round((duration + goal_time + AFTER) / PERIOD)
+    time = PERIOD * np.arange(first, last + 1, dtype=float)
     runs = []
     for trial in range(trials):
         if say is not None:
@@ -171,26 +177,29 @@ def _trial(
     noise = rng.standard_normal((len(time), 3, 7))
     noise *= np.array([POSITION_NOISE, VELOCITY_NOISE, 1.0])[:, None]
     noise[:, 2] *= TORQUE_NOISE * solution.agents[1].limits.tau_upper
-    progress = 0
+    reached, played, fastest = 0, 0, round(FASTEST * PERIOD / float(plan.time[1]))
     command = _at_rest(streamed)
     states, tips = np.zeros((len(time), 3, 7)), np.zeros((len(time), 3))
     for k in range(len(time)):
         states[k] = JOINT_SIGNS * np.stack([arm.position, arm.velocity, arm.torque])
-        progress = plan.progress(states[k, 0], progress)
-        force = load * plan.force[progress]
+        if not np.all(np.abs(states[k, 1]) < RUNAWAY):
+            raise ModelError(f"the simulated arm runs away in {mode} mode at {time[k]:.2f} s; try position_w_id")
+        reached = plan.progress(states[k, 0], reached)
+        played = min(reached, played + fastest)
+        force = load * plan.force[played]
         for step in range(TICKS):
             now = time[k] + STEP * step
             if now >= 0.0 and (step == phase or not stiff):
                 q, v, reference = (JOINT_SIGNS * row for row in (arm.position, arm.velocity, arm.reference))
                 command = server.command(now, q + noise[k, 0], v + noise[k, 1], reference)
-            rows = (JOINT_SIGNS * row for row in (command.rate, command.acceleration, command.torque))
-            arm.advance(*rows, force)
+            rate, acceleration, torque = (
+                JOINT_SIGNS * row for row in (command.rate, command.acceleration, command.torque)
+            )
+            arm.advance(rate, acceleration, torque, force)
             if step == 0:
                 tips[k] = arm.tip  # of the state before the step
-    if not np.isfinite(states).all():
-        raise InputError("--mode", mode, "the simulated arm ran away; its model does not hold for this motion")
     seen = states + noise
-    return Trial(states[:, 0], states[:, 2], tips, seen[:, 0], seen[:, 1], seen[:, 2], server.outcome)
+    return Trial(states[:, 0], states[:, 2], tips, seen[:, 0], seen[:, 1], seen[:, 2], server.outcome, server.gave_up)
 
 
 def _above_gravity(arm: SimulatedArm, trajectory: JointTrajectory, plan: _Plan) -> Array:

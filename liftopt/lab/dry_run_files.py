@@ -72,7 +72,9 @@ def _write_netcdf(run: DryRun, path: Path) -> None:
         "torque": (trials, np.stack([t.torque for t in run.trials]), "N m", "torque that the joint passed on"),
         "tip": (("trial", "time", "xyz"), np.stack([t.tip for t in run.trials]), "m", "grasp point, world axes"),
     }
-    data = {k: (dims, values, {"units": unit, "long_name": long}) for k, (dims, values, unit, long) in variables.items()}
+    data = {
+        k: (dims, values, {"units": unit, "long_name": long}) for k, (dims, values, unit, long) in variables.items()
+    }
     attributes = {"mode": run.mode, "goal_time": run.goal_time, "outcomes": json.dumps([t.outcome for t in run.trials])}
     xarray.Dataset(data, axes, attributes).to_netcdf(path, engine="h5netcdf")
 
@@ -100,7 +102,7 @@ def _plot(run: DryRun) -> bytes:
                     axes.plot(run.time, values, color=LINES[1].color, linewidth=0.9, label="simulated")
                 axes.set(title=name, ylabel=unit)
         handles, labels = grid[0][0].get_legend_handles_labels()
-        grid[0][0].legend(handles[:2], labels[:2], ncols=2)
+        figure.legend(handles[:2], labels[:2], ncols=2, loc="upper right")
         hand, tilt = grid[-1]
         for trial in run.trials:
             off = 1e3 * (trial.tip - run.planned_tip)
@@ -110,7 +112,7 @@ def _plot(run: DryRun) -> bytes:
                 tilt.plot(run.time, off[:, i], color=LINES[i].color, linestyle=LINES[i].linestyle, label=label)
         hand.set(title="hand led off, distance", ylabel="mm")
         tilt.set(title="hand led off, world axes", ylabel="mm")
-        tilt.legend(ncols=3)
+        tilt.legend(ncols=3, loc="lower right")
         for axes in (axes for row in grid for axes in row):
             axes.axvline(float(run.trajectory.time[-1]), color=FAINT, linewidth=0.8)
         for axes in grid[-1]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.lab.action_server import SPEED_RATIO
 from liftopt.lab.dry_run import DryRun
 from liftopt.multibody.sawyer import sawyer_limits
 
@@ -23,7 +24,7 @@ class JointSummary:
 
     Attributes:
         name: of the joint.
-        error_max, error_rms: off the plan during the lift [rad].
+        error_max: off the plan, the most [rad]; error_rms: over the time of the motion [rad].
         error_at_end: off when the motion's time is over, the worst trial [rad].
         error_final: off when the server is done [rad].
         torque_max: that the joint passed on [Nm]; planned_torque_max: of the solution.
@@ -48,22 +49,24 @@ class Summary:
         mode: of the server.
         outcomes: how each trial ended.
         joints: one each.
-        delay: by which the plan must be shifted to fit what the joints did best [s].
+        delay: by which the plan must be shifted to fit what the joints did best [s]; None where they did not follow.
         hand_max, hand_at_end, hand_final: how far the gripper, and with it the hand that follows, is off where it
-            should be at that time: the most during the lift, at its end, and when the server is done [m].
+            should be at that time: the most, at the end of the motion, and when the server is done [m].
         off_path: the most it is off the planned path, whenever it should be there [m].
-        tilt: by which the object would be tilted if the hand kept to the plan instead, the most during the lift [rad].
+        tilt: by which the object would be tilted at most if the hand kept to the plan instead [rad].
+        fast: joints that the plan turns faster than position mode does; none in other modes.
     """
 
     mode: str
     outcomes: tuple[str, ...]
     joints: tuple[JointSummary, ...]
-    delay: float
+    delay: float | None
     hand_max: float
     hand_at_end: float
     hand_final: float
     off_path: float
     tilt: float
+    fast: tuple[str, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as plain data."""
@@ -86,11 +89,11 @@ def summarised(run: DryRun, depth: float) -> Summary:
     joints = tuple(
         JointSummary(
             name,
-            float(error[:, lift, j].max()),
+            float(error[:, :, j].max()),
             float(np.sqrt(np.square(error[:, lift, j]).mean())),
             float(error[:, last, j].max()),
             float(error[:, -1, j].max()),
-            float(torque[:, lift, j].max()),
+            float(torque[:, :, j].max()),
             float(np.abs(run.planned_torque[:, j]).max()),
             float(limits[j]),
         )
@@ -100,12 +103,13 @@ def summarised(run: DryRun, depth: float) -> Summary:
         run.mode,
         tuple(trial.outcome for trial in run.trials),
         joints,
-        _delay(run),
-        float(away[:, lift].max()),
+        _delay(run) if run.mode != "torque" and not any(trial.gave_up for trial in run.trials) else None,
+        float(away.max()),
         float(away[:, last].max()),
         float(away[:, -1].max()),
         max(_off_path(run, trial.tip) for trial in run.trials),
-        float(np.arctan2(np.abs(off[:, lift, 2]), depth).max()),
+        float(np.arctan2(np.abs(off[:, :, 2]), depth).max()),
+        _fast(run) if run.mode == "position" else (),
     )
 
 
@@ -127,14 +131,27 @@ def summary_text(summary: Summary) -> str:
     console.print(table)
     lines = [line.rstrip() for line in text.getvalue().splitlines()]
     lines += [f"Trial {i}: {outcome}" for i, outcome in enumerate(summary.outcomes, start=1)]
+    if summary.delay is not None:
+        lines.append(f"The arm is {summary.delay:.2f} s late.")
     lines += [
-        f"The arm is {summary.delay:.2f} s late.",
         f"The person's hand is led off by at most {1e3 * summary.hand_max:.0f} mm ({1e3 * summary.off_path:.0f} mm off "
         f"the planned path), {1e3 * summary.hand_at_end:.0f} mm at the end of the motion, "
         f"{1e3 * summary.hand_final:.0f} mm when the server is done.",
         f"If it kept to the plan instead, the object would tilt by {np.degrees(summary.tilt):.1f} deg.",
     ]
+    if summary.fast:
+        lines.append(
+            f"Note: position mode turns joints at no more than {100 * SPEED_RATIO:.0f} % of their top speed, less than "
+            f"the plan needs at {', '.join(summary.fast)}: set_joint_position_speed(1.0), or position_w_id"
+        )
+    if summary.mode == "velocity":
+        lines.append("Note: with the server's own goal time, 0 s, the arm stops where it is at the end of the motion")
     return "\n".join(lines)
+
+
+def _fast(run: DryRun) -> tuple[str, ...]:
+    peak = np.abs(run.trajectory.velocity).max(axis=0) / (SPEED_RATIO * sawyer_limits().velocity)
+    return tuple(name for name, share in zip(run.trajectory.names, peak, strict=True) if share > 1.0)
 
 
 def _delay(run: DryRun) -> float:

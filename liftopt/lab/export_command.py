@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 FORMATS = ("ros1", "ros2", "mcap", "csv", "json")
-# The server's velocity mode is late by up to a radian of its gain, kp = 2 /s; in 3 s exp(-6) = 0.25 % of it is left. Its
-# own default is 0 s: it stops where it is when the trajectory's time is over.
+# The server's velocity mode is late; of what is missing at the end, exp(-2 * 3) = 0.25 % is left 3 s later. Its own
+# default is 0 s: it stops where it is when the trajectory's time is over.
 GOAL_TIME = 3.0
 
 
@@ -36,7 +36,7 @@ def add_export_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
     parser.add_argument(
         "--current-pose",
         metavar="POSE",
-        help='where the arm is, right_j0 to right_j6 in rad, as "[a, b, c, d, e, f, g]": the start is checked against it',
+        help='where the arm is, right_j0 to right_j6 in rad, as "[a, b, c, d, e, f, g]": the start is checked by it',
     )
     add_goal_time(parser)
     parser.set_defaults(run=run)
@@ -69,7 +69,7 @@ def export_text(args: argparse.Namespace) -> str:
     goal_time = checked_number("--goal-time", args.goal_time, 0.0, 120.0, "s")  # 120 s is the server's own limit
     from liftopt.lab.joint_trajectory import joint_trajectory
     from liftopt.lab.new_folder import new_folder
-    from liftopt.lab.robot_limits import NEAR, check_limits, check_motion, check_start, read_pose, remarks
+    from liftopt.lab.robot_limits import NEAR, NEAREST, check_limits, check_motion, check_start, read_pose, remarks
     from liftopt.lab.trajectory_files import write_trajectory
 
     solution = load_result(args.result)
@@ -80,7 +80,8 @@ def export_text(args: argparse.Namespace) -> str:
     if args.current_pose is None:
         notes.append("no --current-pose given: that the motion starts within 1 rad of the arm is not checked")
     elif (away := check_start(trajectory, read_pose(args.current_pose))) > NEAR:
-        notes.append(f"the arm is {away:.3f} rad from the start: move it there first, or it jerks")
+        far = "; the server's position modes accept 0.2 rad only" if away > NEAREST else ""
+        notes.append(f"the arm is {away:.3f} rad from the start: move it there first, or it jerks{far}")
     out = Path(args.out)
     with new_folder("--out", out) as folder:
         files = [path.name for path in write_trajectory(trajectory, folder, formats, goal_time)]

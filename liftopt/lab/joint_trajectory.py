@@ -63,6 +63,6 @@ def joint_trajectory(solution: Solution, rate: float = RATE) -> JointTrajectory:
 def motion_at(solution: Solution, time: Array) -> JointTrajectory:
     """Return the robot's motion of a solution at ``time`` (K,) [s] within the lift."""
     robot = solution.agents[1]
-    rows = (robot.q, robot.v, robot.a)
-    q, v, a = motion_between(solution.time, *(JOINT_SIGNS * row[:, robot.moving] for row in rows), time)
+    knots = [JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.a)]
+    q, v, a = motion_between(solution.time, knots[0], knots[1], knots[2], time)
     return JointTrajectory(JOINTS, time, q, v, a)

@@ -7,7 +7,7 @@ manufacturer's intera_sdk, commit 6614dec, intera_joint_trajectory_action/joint_
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +21,12 @@ from liftopt.solution import Solution
 Array = npt.NDArray[np.float64]
 FINER = 10  # points an interval of the solution, as its own verification takes
 ROUNDING = 1e-6  # [rad, rad/s, Nm]: as far as the solver may leave a limit
-START = 1.0  # [rad]: the server refuses a first point farther from the arm (path tolerance -1, its default)
+# The server refuses a first point farther from the arm than its path tolerance, a negative one without the sign [rad].
+START = 1.0  # velocity mode, -1
+NEAREST = 0.2  # both position modes
 NEAR = 0.05  # [rad]: a first point farther off than this makes a jerk worth a note; our estimate
 STANDSTILL = 1e-9  # [rad/s]: the server sets the last velocity to zero, whatever it is
-# Sawyer's simulator, commit 156bf12, sawyer_gazebo/config/acceleration_limits.yaml (Apache-2.0). The server checks none.
+# sawyer_simulator, commit 156bf12, sawyer_gazebo/config/acceleration_limits.yaml (Apache-2.0); the server checks none.
 ACCELERATION = np.array([10.0, 8.0, 10.0, 10.0, 12.0, 12.0, 12.0])  # [rad/s^2]
 FIX = "solve again with a longer duration or more solver.intervals"
 
@@ -61,7 +63,7 @@ def check_motion(trajectory: JointTrajectory) -> None:
         raise InputError("RESULT", NO_VALUE, f"{where}, {trajectory.time[-1]:.3f} s; a trajectory must end at rest")
 
 
-def check_start(trajectory: JointTrajectory, pose: Sequence[float]) -> float:
+def check_start(trajectory: JointTrajectory, pose: Array) -> float:
     """Return how far the first point is from the arm's pose, the largest over joints [rad].
 
     Args:
@@ -71,7 +73,7 @@ def check_start(trajectory: JointTrajectory, pose: Sequence[float]) -> float:
     Raises:
         InputError: it is more than the server accepts; it names the joint and the amount.
     """
-    away = np.abs(trajectory.position[0] - np.asarray(pose))
+    away = np.abs(trajectory.position[0] - pose)
     worst = int(np.argmax(away))
     if away[worst] > START:
         first = trajectory.position[0, worst]

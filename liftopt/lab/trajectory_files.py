@@ -72,9 +72,7 @@ def json_text(trajectory: JointTrajectory, goal_time: float) -> str:
     return json.dumps(goal, indent=1, allow_nan=False) + "\n"
 
 
-def goal_records(
-    messages: RosMessages, trajectory: JointTrajectory, goal_time: float, stamp: int
-) -> Iterator[Record]:
+def goal_records(messages: RosMessages, trajectory: JointTrajectory, goal_time: float, stamp: int) -> Iterator[Record]:
     """Yield the trajectory and the goal that asks for it as they arrive at ``stamp`` [ns]."""
     kind, goal = messages.goal(trajectory, goal_time)
     yield Record(TRAJECTORY_TOPIC, TRAJECTORY, stamp, messages.trajectory(trajectory))
@@ -94,5 +92,3 @@ def _write(trajectory: JointTrajectory, folder: Path, kind: Format, goal_time: f
 
 def _span(nanoseconds: int) -> dict[str, int]:
     return {"secs": nanoseconds // SECOND, "nsecs": nanoseconds % SECOND}
-
-

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -17,26 +17,30 @@ from liftopt.errors import InputError
 from liftopt.solution import Solution
 from liftopt.summary import GRAVITY, summary_dict
 from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
+from liftopt.viz.plots_comparison import experiment_tables
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_forces import shares
-from liftopt.viz.report_figures import inline_figures
+from liftopt.viz.report_figures import inline_comparisons, inline_figures
 from liftopt.viz.report_findings import NEAR_LIMIT, findings
 from liftopt.viz.report_tables import Headline, check_rows, joint_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
+
+if TYPE_CHECKING:
+    from liftopt.lab.experiment import Experiment
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
 
 
-def write_report(solution: Solution, file: Path) -> None:
-    """Write the report to ``file``; its folder is made if need be.
+def write_report(solution: Solution, file: Path, experiment: Experiment | None = None) -> None:
+    """Write the report to ``file``, with the experiment if there is one; its folder is made if need be.
 
     Raises:
         InputError: the file cannot be written.
     """
     if file.is_dir():
         raise InputError("--html", str(file), "cannot be written: there is a folder of that name")
-    text = report_html(solution)
+    text = report_html(solution, experiment)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
@@ -44,14 +48,15 @@ def write_report(solution: Solution, file: Path) -> None:
         raise InputError("--html", str(file), f"cannot be written: {error.strerror or error}") from None
 
 
-def report_html(solution: Solution) -> str:
-    """Return the report as one HTML page that needs nothing else."""
+def report_html(solution: Solution, experiment: Experiment | None = None) -> str:
+    """Return the report as one HTML page that needs nothing else; with what was recorded, if it was."""
     lift = Lift.of(solution)
     dense, ergonomics = lift.dense, assess(lift.dense)
     human = human_curves(dense.agents[0])
     robot = robot_curves(dense.agents[1], solution.scenario.robot.model)
     summary = summary_dict(solution)
     figures = inline_figures(lift)
+    compared = inline_comparisons(experiment) if experiment else {}
     context: dict[str, Any] = {
         "css": Markup((files("liftopt.viz.assets") / CSS).read_text(encoding="utf-8")),
         "version": liftopt.__version__,
@@ -60,7 +65,13 @@ def report_html(solution: Solution) -> str:
         "summary": summary,
         "findings": findings(dense, human, robot, ergonomics),
         "headlines": _headlines(dense, human, robot, ergonomics),
-        "figures": {name: {"svg": Markup(figure.svg), "caption": figure.caption} for name, figure in figures.items()},
+        "figures": {
+            name: {"svg": Markup(figure.svg), "caption": figure.caption}
+            for name, figure in (figures | compared).items()
+        },
+        "experiment": experiment,
+        "experiment_tables": experiment_tables(experiment) if experiment else {},
+        "compared": list(compared),
         "playback": playback_page(solution),
         "joints": {"person": joint_rows(human, dense), "robot": joint_rows(robot, dense)},
         "near_limit": 100 * NEAR_LIMIT,

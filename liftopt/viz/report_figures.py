@@ -5,9 +5,16 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from html import escape
+from typing import TYPE_CHECKING
 
-from liftopt.viz.plots import PLOTS, Plot, drawn, rendered
+from matplotlib.figure import Figure
+
+from liftopt.viz.plots import PLOTS, drawn, rendered
+from liftopt.viz.plots_comparison import drawn_comparisons
 from liftopt.viz.plots_data import Lift
+
+if TYPE_CHECKING:
+    from liftopt.lab.experiment import Experiment
 
 # The second is as wide as the first, which few readers have; any other would shift the labels.
 FONTS = "'DejaVu Sans', Verdana, Geneva, sans-serif"
@@ -24,20 +31,24 @@ class InlineFigure:
 
 def inline_figures(lift: Lift) -> dict[str, InlineFigure]:
     """Return all plots by name."""
-    return {plot.name: InlineFigure(plot.name, plot.caption, _inline(plot, lift)) for plot in PLOTS}
+    return {plot.name: _inline(plot.name, plot.caption, drawn(plot, lift)) for plot in PLOTS}
 
 
-def _inline(plot: Plot, lift: Lift) -> str:
+def inline_comparisons(found: Experiment) -> dict[str, InlineFigure]:
+    """Return the plots of an experiment by name."""
+    return {plot.name: _inline(plot.name, plot.caption, figure) for plot, figure in drawn_comparisons(found)}
+
+
+def _inline(name: str, caption: str, figure: Figure) -> InlineFigure:
     """Return the element without prolog and size, with ids that no other figure of the page has."""
-    svg = rendered(drawn(plot, lift), "svg").decode()
+    svg = rendered(figure, "svg").decode()
     svg = svg[svg.index("<svg") :]
     for dropped in (r"<metadata>.*?</metadata>", r"<style.*?</style>"):
         svg = re.sub(dropped, "", svg, flags=re.DOTALL)
     for link in ('id="', "url(#", 'href="#'):
-        svg = svg.replace(link, f"{link}{plot.name}-")
+        svg = svg.replace(link, f"{link}{name}-")
     svg = svg.replace("'DejaVu Sans'", FONTS)
     head, rest = svg.split(">", 1)
     (view,) = re.findall(r'viewBox="[^"]*"', head)
-    return (
-        f'<svg xmlns:xlink="http://www.w3.org/1999/xlink" {view} role="img" aria-label="{escape(plot.caption)}">{rest}'
-    )
+    start = f'<svg xmlns:xlink="http://www.w3.org/1999/xlink" {view} role="img" aria-label="{escape(caption)}">'
+    return InlineFigure(name, caption, start + rest)

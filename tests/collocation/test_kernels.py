@@ -20,6 +20,7 @@ from liftopt.collocation import kernels, libraries
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions
 from liftopt.collocation.kernels import ROLES, Kernel, find_compiler, load_kernels
 from liftopt.collocation.libraries import cache_folder
+from liftopt.seal import DIGEST_BYTES
 
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler on this machine")
 
@@ -154,7 +155,7 @@ def foreign(path: Path) -> None:
 
 
 def unseal(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[: -libraries.DIGEST_BYTES])
+    path.write_bytes(path.read_bytes()[:-DIGEST_BYTES])
 
 
 @needs_compiler

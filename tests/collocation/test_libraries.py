@@ -10,6 +10,7 @@ import pytest
 
 from liftopt.collocation import libraries
 from liftopt.collocation.libraries import LIBRARY_NAME, UNUSED_DAYS, cache_folder, find_library, keep
+from liftopt.seal import DIGEST_BYTES
 
 KEY, OTHER = "0123456789abcdef" * 2, "f" * 32
 needs_owners = pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners on this system")
@@ -42,7 +43,7 @@ def put(folder: Path, content: str, key: str = KEY) -> Path:
 
 def content(path: Path) -> str:
     """Open a library: what it holds but for its seal."""
-    return path.read_bytes()[: -libraries.DIGEST_BYTES].decode()
+    return path.read_bytes()[:-DIGEST_BYTES].decode()
 
 
 def test_the_package_comes_first_then_the_cache(package: Path, cache: Path) -> None:

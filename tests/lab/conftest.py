@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,9 @@ import numpy.typing as npt
 import pinocchio as pin
 import pytest
 
+from liftopt.interpolation import refined
 from liftopt.lab.marker_map import MarkerMap
+from liftopt.lab.recorded_lift import RecordedLift
 from liftopt.lab.recording import Recording
 from liftopt.multibody.anthropometry import LinkLengths, link_lengths
 from liftopt.multibody.dh import human_rows
@@ -20,10 +23,12 @@ from liftopt.multibody.segments import SEGMENTS
 from liftopt.multibody.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 from liftopt.scenario_schema import section
+from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
 RATE = 100.0
+STANDING = 0.4  # s before and after a lift made up
 HEADING = np.radians(200.0)
 SHIFT = np.array([0.8, -0.3, 0.25])
 SUBJECT = Subject(1.7, 65.0, "female")
@@ -124,12 +129,64 @@ def truth() -> Lift:
 
 
 @pytest.fixture(scope="session")
+def as_recorded() -> Callable[..., RecordedLift]:
+    """Return a function that makes a record of a predicted motion, with known differences."""
+    return _as_recorded
+
+
+@pytest.fixture(scope="session")
 def box_lift() -> Path:
     """Return the folder of a real recorded box lift, beside the repository; skip where it is not."""
     folder = Path(__file__).parents[3] / "shared" / "data" / "box_lift"
     if not folder.is_dir():
         pytest.skip("the recorded box lift (test data of pyomeca) is not beside the repository")
     return folder
+
+
+def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, raised: float = 0.0) -> RecordedLift:
+    """Return a record of the predicted motion: late by a share of the lift, values scaled, angles raised."""
+    dense = refined(solution, 10)
+    human, held = dense.agents[0], dense.held
+    duration = float(dense.time[-1])
+    time = np.arange(round((duration + 2 * STANDING) * 200) + 1) / 200
+
+    def over(values: Array) -> Array:
+        flat = values.reshape(len(dense.time), -1)
+        at = time - STANDING - late * duration
+        return np.stack([np.interp(at, dense.time, column) for column in flat.T], axis=1)
+
+    person, none = solution.scenario.human, np.zeros((len(time), 3))
+    subject = Subject(person.stature, person.mass, "male" if person.sex == "male" else "female")
+    return RecordedLift(
+        source="made up",
+        rate=200.0,
+        cutoff=6.0,
+        subject=subject,
+        stature_estimated=False,
+        stature_by={},
+        lengths=link_lengths(subject),
+        urdf=solution.urdfs["human_arm.urdf"],
+        joint_names=human.joint_names,
+        time=time,
+        q=scale * over(human.q) + raised * human.moving,
+        v=over(human.v),
+        a=over(human.a),
+        tau=scale * over(human.tau),
+        hand_position=over(human.grasp_position),
+        hand_force=scale * over(human.grasp_force),
+        force_from="measured: made up",
+        ground_force=none,
+        ground_moment=none,
+        plate_force=None,
+        markers=(),
+        residual=np.zeros((len(time), 0)),
+        elbow_flexion=-over(human.q[:, [9]])[:, 0],
+        object_position=over(held.pose[:, :3]),
+        object_quaternion=over(held.quaternion),
+        carried=(STANDING, STANDING + duration),
+        gaps=(),
+        notes=(),
+    )
 
 
 def _zero_pose(lengths: LinkLengths) -> dict[str, dict[str, Array]]:

@@ -12,6 +12,7 @@ import pytest
 from liftopt.lab.marker_map import load_marker_map
 from liftopt.lab.motion_table import read_motion_table
 from liftopt.lab.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
+from liftopt.lab.recorded_scenario import recorded_scenario
 
 pytest.importorskip("ezc3d", reason="ezc3d is not installed (it is in the extra 'lab')")
 
@@ -66,6 +67,17 @@ def test_the_object_is_lifted_where_the_file_has_it(recorded: RecordedLift) -> N
     assert rise.max() == pytest.approx(0.335, abs=0.02)
     assert rise[-1] == pytest.approx(0.228, abs=0.01)
     assert recorded.carried == (pytest.approx(1.65, abs=0.1), pytest.approx(3.75, abs=0.15))
+
+
+def test_its_scenario(recorded: RecordedLift) -> None:
+    """Where the box's markers start and end in the file, and half a metre between its two hands."""
+    scenario = recorded_scenario(recorded, 6.0)
+    start, end = scenario.task.start, scenario.task.end
+    assert end.height - start.height == pytest.approx(0.23, abs=0.02)
+    assert scenario.duration == pytest.approx(2.1, abs=0.1)
+    assert 0.4 < scenario.table.depth < 0.7
+    assert 0.4 < (end.human_distance or 0.0) < (start.human_distance or 0.0) < 0.7
+    assert (scenario.human.sex, scenario.human.mass) == ("female", 60.0)
 
 
 def test_another_tool_worked_on_this_trial(box_lift: Path) -> None:

@@ -1,0 +1,191 @@
+"""Mesh refinement: how far an answer is from the lift in continuous time, and finer meshes until that is near enough.
+
+The objective falls at first order in the step: zero acceleration at both ends (eq. 19) costs a ramp over one interval,
+and nothing in continuous time. So J(h) = J(0) + c h, and the optima on two meshes of steps h and r h give
+J(0) = J(h) - (J(r h) - J(h)) / (r - 1) (Richardson). On the default lift, where J(0) is 817.3 by a second
+transcription, N = 10 and 20 give 794, 20 and 40 give 812, 40 and 80 give 816. The residuals between knots fall at
+second order (balance, torques) and faster (closure).
+
+Two optima can be compared only if they are the same motion: from one, the other is solved on its own mesh, and if it
+ends elsewhere there is no estimate. For the same reason each refinement starts not from the best optimum alone but
+from all that the coarse mesh cannot tell from it: their order may change.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from liftopt.accuracy import OTHER_MOTION, Accuracy
+from liftopt.collocation.solvers.result import STOPPED
+from liftopt.collocation.spline import FEWEST, RestToRestSpline
+from liftopt.collocation.transfer import transfer, transfer_multipliers
+from liftopt.errors import SolverError
+from liftopt.plan import Plan
+from liftopt.scenario import Refine
+from liftopt.solution import StartRecord
+from liftopt.workshop import Workshop
+
+if TYPE_CHECKING:
+    from liftopt.lift import Search
+
+Say = Callable[[str], None]
+FINEST = 400
+# Of 16 lifts optima on N = 10, 20 and 40 were up to 0.3 apart in one basin, and in two from 0.6 to 6.
+SAME_MOTION = 0.4  # [rad, m]
+SURE = "ipopt"  # where another solver finds nothing
+QUICKEST = ("banded", SURE)
+MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
+SAME_OPTIMUM = 1e-4  # relative difference of two objectives
+
+
+def estimate(workshop: Workshop, plan: Plan, deadline: float, say: Say) -> Accuracy:
+    """Return the accuracy of a verified plan, from its optimum on half as many intervals; on twice as many if need be.
+
+    Args:
+        workshop: where solvers come from.
+        plan: solved.
+        deadline: ``time.monotonic`` value past which the objective is not estimated.
+        say: hears of it.
+    """
+    known, n = Accuracy.between_knots(plan.verification), plan.spline.intervals
+    for intervals in (n // 2, 2 * n):
+        if FEWEST <= intervals <= FINEST and time.monotonic() < deadline:
+            say(f"estimating the error of the objective on {intervals} intervals")
+            other = neighbour(workshop, plan, intervals, QUICKEST, deadline, say)
+            known = compared(plan, other) if other is not None else known
+            if known.estimated:
+                break
+    return known
+
+
+def neighbour(
+    workshop: Workshop, plan: Plan, intervals: int, solvers: Sequence[str], deadline: float, say: Say
+) -> Plan | None:
+    """Return the optimum that another one leads to on another mesh; None if no solver converges in time.
+
+    Args:
+        workshop: where solvers come from.
+        plan: a converged one.
+        intervals: of the other mesh.
+        solvers: names, the first to be tried first.
+        deadline: ``time.monotonic`` value past which solvers stop.
+        say: hears of kernels that are compiled.
+    """
+    spline, scenario = RestToRestSpline(intervals), plan.scenario
+    problem = workshop.problem(scenario, spline, say)
+    start = transfer(plan.problem, plan.spline, plan.result.x, problem, spline)
+    warm = transfer_multipliers(plan.problem, plan.result.multipliers, problem)
+    for name in solvers:
+        try:
+            solver = workshop.solver(problem, scenario, name, say)
+        except SolverError:  # an extension that is missing: the next one does
+            continue
+        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem)
+        if result.converged:
+            return Plan(scenario, problem, spline, f"{plan.start.partition(MESH)[0]}{MESH}{intervals}", result)
+        if result.status == STOPPED:
+            break
+    return None
+
+
+def compared(plan: Plan, other: Plan) -> Accuracy:
+    """Return the accuracy of a verified plan, whose optimum on another mesh is ``other``."""
+    known, apart = Accuracy.between_knots(plan.verification), distance(plan, other)
+    known = replace(known, intervals=other.spline.intervals, apart=apart)
+    here, there = plan.result.objective, other.result.objective
+    slope = (there - here) / (plan.spline.intervals / other.spline.intervals - 1)
+    limit = here - slope
+    if apart > SAME_MOTION or slope < 0 or limit <= 0:
+        return replace(known, remark=OTHER_MOTION.format(intervals=other.spline.intervals))
+    return replace(known, objective_limit=limit, objective_error=here / limit - 1, remark="")
+
+
+def distance(one: Plan, other: Plan) -> float:
+    """Return how far two motions are apart: root mean square over time, of what differs most [rad, m]."""
+    phase = np.linspace(0.0, 1.0, 4 * max(one.spline.intervals, other.spline.intervals) + 1)
+    first, second = (plan.spline.basis(phase) @ plan.problem.unpack(plan.result.x)[0] for plan in (one, other))
+    return float(np.sqrt(np.mean((first - second) ** 2, axis=0)).max())
+
+
+def unmet(accuracy: Accuracy, wanted: Refine) -> str:
+    """Return what is not accurate enough, how much it is and how much is asked for, in one line; empty if all is."""
+    figures = (
+        ("estimated error of the objective", accuracy.objective_error, wanted.objective_error, 100.0, " %"),
+        ("closure between knots", accuracy.closure, wanted.closure, 1e3, " mm"),
+        ("balance between knots", accuracy.balance, wanted.balance, 1.0, " N, Nm"),
+        ("torque above its limit between knots", accuracy.torque_excess, wanted.torque_excess, 1.0, " Nm"),
+    )
+    # A NaN is not met.
+    return "; ".join(
+        f"{name} {'unknown' if np.isnan(value) else f'{factor * value:.2g}{unit}'} ({factor * most:g}{unit} asked)"
+        for name, value, most, factor, unit in figures
+        if not value <= most
+    )
+
+
+def rivals(plans: Sequence[Plan], best: Plan, accuracy: Accuracy) -> list[Plan]:
+    """Return the plans on one mesh that it cannot tell from the best one, this first, each optimum once.
+
+    Their objectives are within the estimated error of the best one's; where there is no estimate, all are.
+    """
+    within = best.result.objective * (1 + (accuracy.objective_error if accuracy.estimated else np.inf))
+    chosen = [best]
+    for plan in plans:
+        here = plan.result.objective
+        known = any(abs(here - other.result.objective) <= SAME_OPTIMUM * here for other in chosen)
+        if plan.result.converged and here <= within and not known:
+            chosen.append(plan)
+    return chosen
+
+
+def finer(search: Search, plans: Sequence[Plan]) -> Plan | None:
+    """Return the best verified optimum that others lead to on twice their intervals; None if there is none."""
+    intervals, found = 2 * plans[0].spline.intervals, []
+    solvers = tuple(dict.fromkeys((search.scenario.solver.name, SURE)))
+    for plan in plans:
+        search.say(f"solving on {intervals} intervals: {plan.start}")
+        if (there := neighbour(search.workshop, plan, intervals, solvers, search.deadline, search.say)) is not None:
+            found.append(there)
+            result = there.result
+            record = StartRecord(there.start, "converged", result.objective, result.iterations, result.seconds)
+            search.records.append(record)
+    search.plans = sorted(found, key=lambda plan: plan.result.objective)
+    return next((plan for plan in search.plans if plan.solved or plan.refinable), None)
+
+
+def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
+    """Return a solved plan and its accuracy, on a mesh as fine as its scenario asks for.
+
+    The search goes from mesh to mesh, each twice as fine, until ``Refine`` is met, its time is over or the mesh is the
+    finest there may be; what came of it is among its notes.
+    """
+    accuracy = estimate(search.workshop, plan, search.deadline, search.say)
+    wanted, coarse = search.scenario.refine, plan.spline.intervals
+    if not wanted.on or not (first := unmet(accuracy, wanted)):
+        return plan, accuracy
+    missing = first
+    while missing and 2 * plan.spline.intervals <= FINEST and time.monotonic() < search.deadline:
+        candidates = {rival.start.partition(MESH)[0]: rival for rival in rivals(search.plans, plan, accuracy)}
+        best = finer(search, [*candidates.values()])
+        if best is None or not best.solved:
+            search.notes.append(f"no solution was found on {2 * plan.spline.intervals} intervals")
+            break
+        origin = candidates[best.start.partition(MESH)[0]]
+        if origin is not plan:
+            search.notes.append(
+                f"on {best.spline.intervals} intervals another local optimum is the best, with J = "
+                f"{best.result.objective:.5g}; on {plan.spline.intervals} it had {origin.result.objective:.5g} where "
+                f"{plan.result.objective:.5g} was the best"
+            )
+        plan, accuracy = best, compared(best, origin)
+        missing = unmet(accuracy, wanted)
+    if plan.spline.intervals > coarse:
+        search.notes.append(f"mesh refined from N = {coarse} to {plan.spline.intervals}: {first}")
+    if missing:
+        search.notes.append(f"not as accurate as asked for on {plan.spline.intervals} intervals: {missing}")
+    return plan, accuracy

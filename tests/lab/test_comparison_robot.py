@@ -1,0 +1,178 @@
+"""Bags of the robot: a predicted motion written as JointState messages is read back; broken bags are refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+import pytest
+
+from liftopt.errors import InputError
+from liftopt.interpolation import refined
+from liftopt.lab.bags import Kind, Record, write_bag
+from liftopt.lab.experiment import experiment
+from liftopt.lab.robot_record import RobotRecord, read_robot_record
+from liftopt.lab.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosMessages
+from liftopt.scene import robot_of
+from liftopt.solution import Solution
+
+pytest.importorskip("rosbags", reason="rosbags is not installed (it is in the extra 'lab')")
+
+Array = npt.NDArray[np.float64]
+CHEAP = ("solver.intervals=10", "solver.starts=1")
+# The manufacturer's names; the head is among them, and the fourth joint turns the other way than in Table 3.
+NAMES = ["head_pan", *(f"right_j{i}" for i in range(7))]
+SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
+SENT = 100.5  # s on the bag's clock
+RATE = 100.0
+
+
+@pytest.fixture(scope="module")
+def solution(solved: Callable[..., Any]) -> Solution:
+    return solved("table5", *CHEAP).solution
+
+
+def states(solution: Solution, late: float = 0.0, after: float = 1.0) -> tuple[Array, Array, Array]:
+    """Return times since the goal was sent, angles and torques in Sawyer's signs; the motion is ``late`` [s]."""
+    dense = refined(solution, 10)
+    robot = dense.agents[1]
+    time = np.arange(-50, round((float(dense.time[-1]) + after) * RATE) + 1) / RATE
+
+    def over(values: Array) -> Array:
+        columns = (SIGNS * values[:, robot.moving]).T
+        return np.stack([np.interp(time - late, dense.time, column) for column in columns], axis=1)
+
+    return time, over(robot.q), over(robot.tau)
+
+
+def bag(path: Path, rows: tuple[Array, Array, Array], kind: Kind = "ros1", goal: bool = True, **change: Any) -> Path:
+    """Write the rows as JointState messages, with a trajectory sent at time 0, and return the bag."""
+    messages = RosMessages.of(ros1=kind == "ros1")
+    names = change.get("names", NAMES)
+
+    def records() -> Iterator[Record]:
+        for time, q, tau in zip(*rows, strict=True):
+            stamp = round((SENT + time) * SECOND)
+            if goal and time == 0.0:
+                sent = messages.store.types[TRAJECTORY](header=messages._header(0), joint_names=[], points=[])
+                yield Record("/commanded", TRAJECTORY, stamp, sent)
+            q, tau = np.append(0.0, q), np.append(0.0, tau) if change.get("effort", True) else np.empty(0)
+            written = messages.joint_state(stamp if change.get("clock", True) else 0, names, q, 0.0 * q, tau)
+            yield Record("/robot/joint_states", JOINT_STATE, stamp, written)
+            gripper = messages.joint_state(stamp, ["gripper"], np.zeros(1), np.zeros(1), np.zeros(1))
+            yield Record("/io/joint_states", JOINT_STATE, stamp, gripper)
+
+    return write_bag(path, kind, messages, records())
+
+
+@pytest.mark.parametrize("kind", ["ros1", "ros2", "mcap"])
+def test_a_bag_is_read_back_in_the_signs_of_table_3(solution: Solution, tmp_path: Path, kind: Kind) -> None:
+    record = read_robot_record(bag(tmp_path / "trial", states(solution), kind))
+    dense = refined(solution, 10)
+    robot = dense.agents[1]
+    assert record.tau is not None
+    assert record.began == "when the trajectory was sent"
+    share = dense.time / dense.time[-1]
+    np.testing.assert_allclose(record.over_share(record.q, share, 2.0), robot.q[:, robot.moving], atol=1e-9)
+    np.testing.assert_allclose(record.over_share(record.tau, share, 2.0), robot.tau[:, robot.moving], atol=1e-9)
+
+
+def test_stamps_of_a_publisher_without_a_clock(solution: Solution, tmp_path: Path) -> None:
+    with_clock = read_robot_record(bag(tmp_path / "a", states(solution)))
+    without = read_robot_record(bag(tmp_path / "b", states(solution), clock=False))
+    np.testing.assert_allclose(with_clock.time, without.time, atol=1e-9)
+
+
+def test_without_a_goal_the_lift_begins_as_the_arm_moves(solution: Solution, tmp_path: Path) -> None:
+    """The predicted motion itself says when one joint first is 0.005 rad from its start."""
+    rows = states(solution)
+    record = read_robot_record(bag(tmp_path / "trial", rows, goal=False))
+    moved = rows[0][np.abs(rows[1] - rows[1][0]).max(axis=1) > 0.005][0]
+    assert record.time[0] == pytest.approx(rows[0][0] - moved + 1 / RATE, abs=1e-6)
+    assert "had moved" in record.began
+
+
+def test_three_trials_averaged(solution: Solution, tmp_path: Path) -> None:
+    """Trials that differ by -1, 0 and 1 Nm and are 0.1 s late, 5 % of the lift."""
+    time, q, tau = states(solution, late=0.1)
+    trials = [read_robot_record(bag(tmp_path / f"trial_{i}", (time, q, tau + i))) for i in (-1, 0, 1)]
+    found = experiment(solution, robot=trials)
+    assert [item.name for item in found.group("robot_torque")] == [f"Q{i}" for i in range(1, 8)]
+    for item in found.group("robot_torque"):
+        np.testing.assert_allclose(item.spread, 1.0, atol=1e-9)
+    for item in (*found.group("robot_angle")[:4], *found.group("robot_torque")[:4]):
+        assert item.measures.phase == pytest.approx(5.0, abs=0.5), item.label
+        assert item.measures.correlation < 1.0
+
+
+@pytest.mark.parametrize(
+    ("sign", "beyond_gravity", "said"),
+    [
+        (1.0, False, None),
+        (-1.0, False, "better with the other sign: 0.0"),
+        (1.0, True, "better as torques beyond the arm's own weight: 0.0"),
+        (-1.0, True, "better as torques beyond the arm's own weight, with the other sign: 0.0"),
+    ],
+)
+def test_what_efforts_may_mean(solution: Solution, sign: float, beyond_gravity: bool, said: str | None) -> None:
+    """Efforts made with another meaning, by Pinocchio's gravity torques, are told apart but not changed."""
+    dense = refined(solution, 10)
+    robot = dense.agents[1]
+    model = robot_of(solution.scenario, solution.urdfs).model
+    data = model.createData()
+    weight = np.array([pin.computeGeneralizedGravity(model, data, q) for q in robot.q])
+    tau = sign * (robot.tau - beyond_gravity * weight)[:, robot.moving]
+    record = RobotRecord("made up", dense.time, robot.q[:, robot.moving], tau, "at 0")
+    found = experiment(solution, robot=[record])
+    np.testing.assert_allclose(found.group("robot_torque")[1].trials[0], tau[:, 1], atol=1e-9)
+    notes = [note for note in found.notes if "fit the prediction better" in note]
+    assert [said in note for note in notes] == [True] if said else notes == []
+
+
+def test_a_bag_without_efforts_has_angles(solution: Solution, tmp_path: Path) -> None:
+    record = read_robot_record(bag(tmp_path / "trial", states(solution), effort=False))
+    found = experiment(solution, robot=[record])
+    assert {item.group for item in found.comparisons} == {"robot_angle"}
+    assert any("left out of the torques" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        (
+            {"names": [name.replace("j6", "j7") for name in NAMES]},
+            "holds no sensor_msgs/msg/JointState with the joints",
+        ),
+        ({"names": [*NAMES, "extra"]}, "message 1 = '8 of position': names 9 joints"),
+    ],
+)
+def test_messages_of_another_robot(solution: Solution, tmp_path: Path, change: dict[str, Any], match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        read_robot_record(bag(tmp_path / "trial", states(solution), **change))
+
+
+def test_damaged_and_missing_bags(solution: Solution, tmp_path: Path) -> None:
+    time, q, tau = states(solution)
+    broken = tau.copy()
+    broken[7, 3] = np.nan
+    with pytest.raises(InputError, match=r"topic /robot/joint_states, message 8 = 'effort of right_j3 nan'"):
+        read_robot_record(bag(tmp_path / "nan", (time, q, broken)))
+    with pytest.raises(InputError, match="the arm does not move by"):
+        read_robot_record(bag(tmp_path / "still", (time, 0.0 * q, tau), goal=False))
+    with pytest.raises(InputError, match="no such bag"):
+        read_robot_record(tmp_path / "none.bag")
+    whole = bag(tmp_path / "whole", (time, q, tau))
+    for name, content in (("cut.bag", whole.read_bytes()[:20_000]), ("text.bag", b"time,q\n1,2\n"), ("empty.bag", b"")):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(InputError, match=f"{name}: cannot be read as a bag"):
+            read_robot_record(tmp_path / name)
+
+
+def test_a_bag_that_ends_too_soon(solution: Solution, tmp_path: Path) -> None:
+    record = read_robot_record(bag(tmp_path / "short", states(solution, after=-0.5)))
+    with pytest.raises(InputError, match=r"= '1\.50 s': must last the lift's 2 s"):
+        experiment(solution, robot=[record])

@@ -1,0 +1,146 @@
+"""What is in the way and what would help: oracles are SciPy on Pinocchio, half the weight in each hand, speed."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from scipy.optimize import minimize
+
+from liftopt import remedies
+from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.lift import Search, lift
+from liftopt.scenario import load_scenario, scenario_to_dict, with_overrides
+from liftopt.scene import robot_of
+from liftopt.solution import Solution
+from liftopt.summary import summary_dict
+from liftopt.workshop import Workshop
+
+FAR = ("task.standing_distance=2.3",)
+WEAK = ("limits.max_grasp_force=8", "duration=8")
+FAST = ("duration=0.3", "table.mass=6", "solver.starts=3")
+BANDED = ("solver.name=banded", "solver.starts=2")
+
+
+@cache
+def _workshop() -> Workshop:
+    return Workshop()
+
+
+@cache
+def _solution(*overrides: str) -> Solution:
+    return lift(load_scenario("table5", [*BANDED, *overrides]), workshop=_workshop())
+
+
+def _value(solution: Solution, *keys: str) -> float:
+    return next(remedy.values[0] for remedy in solution.remedies if remedy.keys == keys)
+
+
+def _farthest(height: float) -> float:
+    """Return the largest distance of feet and base at which the robot's hand gets to 0.85 m ahead of the feet."""
+    robot = robot_of(load_scenario("table5", FAR))
+    model, limits = robot.reduced(), robot.limits
+    data, frame = model.createData(), model.getFrameId(robot.grasp_frame)
+
+    def hand(q: np.ndarray) -> np.ndarray:
+        pin.framesForwardKinematics(model, data, q)
+        return np.array(data.oMf[frame].translation)
+
+    def slope(q: np.ndarray) -> np.ndarray:
+        return np.asarray(pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3])
+
+    found = []
+    for seed in range(12):
+        q = np.random.default_rng(seed).uniform(limits.q_lower, limits.q_upper)
+        level = {"type": "eq", "fun": lambda q: hand(q)[2:] - height, "jac": lambda q: slope(q)[2:]}
+        result = minimize(
+            lambda q: hand(q)[0], q, jac=lambda q: slope(q)[0], constraints=[level], method="SLSQP",
+            bounds=list(zip(limits.q_lower, limits.q_upper, strict=True)),
+        )  # fmt: skip
+        found += [float(result.fun)] if result.success else []
+    return 2.3 - (min(found) - 0.85)
+
+
+def test_a_robot_too_far_away_is_to_come_as_near_as_it_must_reach() -> None:
+    """The base moves in steps of 1 cm; one more is granted to torques and to the motion between the ends."""
+    solution, farthest = _solution(*FAR), min(_farthest(0.9), _farthest(1.4))
+    assert not solution.solved
+    assert [(r.constraint, r.who, r.time) for r in solution.reasons] == [
+        ("closure", "robot", 0.0), ("closure", "robot", 2.0)
+    ]  # fmt: skip
+    nearer = _value(solution, "task.standing_distance")
+    assert farthest - 0.02 <= nearer <= farthest
+    message = next(r.message for r in solution.remedies if r.keys == ("task.standing_distance",))
+    assert message == f"robot base {2.3 - nearer:.2f} m nearer"
+
+
+def test_an_object_too_heavy_for_two_grasps_is_to_weigh_what_they_hold() -> None:
+    """Two hands of 8 N hold 16 N, and 9.81 N hold 2 kg; steps of 0.1 kg and 1 N, and hardly any acceleration in 8 s."""
+    solution = _solution(*WEAK)
+    assert {(r.constraint, r.unit) for r in solution.reasons} == {("grasp_force", "times the limit")}
+    assert _value(solution, "table.mass") == pytest.approx(np.floor(10 * 16 / 9.81) / 10)
+    assert _value(solution, "limits.max_grasp_force") == np.ceil(2 * 9.81 / 2)
+
+
+def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 2 m/s, 0.5 m take 0.28 s with 20 intervals; 0.3 s leave that speed, and torques and times are named."""
+    longer = remedies.levers(load_scenario("table5"))[0]
+    monkeypatch.setattr(remedies, "levers", lambda scenario: [longer])
+    solution = _solution(*FAST)
+    assert solution.status.startswith("infeasible: ")
+    assert "\n" not in solution.status
+    assert solution.reasons
+    for reason in solution.reasons:
+        assert reason.message in solution.status
+        assert reason.time is not None and 0.0 <= reason.time <= 0.3
+        assert f"at {reason.time:.2f} s" in reason.message
+        assert reason.share > 0.0 and f"({100 * reason.share:.0f} %)" in reason.message
+    assert {"velocity", "torque"} & {reason.constraint for reason in solution.reasons}
+    assert 0.3 < _value(solution, "duration") < 0.5
+
+
+@pytest.mark.parametrize("overrides", [FAR, WEAK])
+def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, ...]) -> None:
+    solution = _solution(*overrides)
+    assert solution.remedies == tuple(sorted(solution.remedies, key=lambda remedy: remedy.size))
+    summary = summary_dict(solution)
+    assert [entry["message"] for entry in summary["remedies"]] == [remedy.message for remedy in solution.remedies]
+    smallest = solution.remedies[0]
+    changes = [f"{key}={value}" for key, value in zip(smallest.keys, smallest.values, strict=True)]
+    assert lift(with_overrides(solution.scenario, changes), workshop=_workshop()).solved
+
+
+def test_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
+    scenario = load_scenario("table5", [*BANDED, *FAR])
+    before = scenario_to_dict(scenario)
+    search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
+    assert remedies.Remedies(search, [], time.monotonic()).against(_solution(*FAR).reasons) == ()
+    assert scenario_to_dict(scenario) == before
+
+
+def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The solver gives up at every start but the last, which it is brought by the elastic problem."""
+    solve = Banded.solve
+    failed: list[SolverResult] = []
+
+    def fails_first(self: Banded, x0: np.ndarray, **given: Any) -> SolverResult:
+        result = solve(self, x0, **given)
+        if len(self.problem.mesh.phase) == 1 or len(failed) == 2:  # a posture, or the last start
+            return result
+        failed.append(result)
+        return replace(result, converged=False, status="Line_Search_Failed", x=x0)
+
+    monkeypatch.setattr(Banded, "solve", fails_first)
+    solution = lift(load_scenario("table5", BANDED))
+    assert solution.solved and solution.kept_start == "elastic"
+    assert [start.status for start in solution.starts] == ["Line_Search_Failed"] * 2 + ["converged"]
+    assert solution.reasons == () == solution.remedies
