@@ -109,7 +109,7 @@ class Limits:
 class Solver:
     """How the problem is solved."""
 
-    name: Annotated[str, Choice("interior point that solves it", ("ipopt", "banded"))] = "ipopt"
+    name: Annotated[str, Choice("interior point that solves it", ("banded", "ipopt"))] = "banded"
     intervals: Annotated[int, Whole("spline intervals N", 6, 400)] = 20
     starts: Annotated[int, Whole("starts of which the best is kept", 1, 64)] = 4
     tolerance: Annotated[float, Number("KKT error at which a start has converged", "", 1e-10, 1e-3)] = 1e-6

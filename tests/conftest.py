@@ -93,4 +93,6 @@ def solution() -> SimpleNamespace:
         verification=SimpleNamespace(checks=(check,), passed=True, worst=check, kkt_error=4e-7),
         notes=("mesh refined to N = 40",),
         accuracy=None,
+        reasons=(),
+        remedies=(),
     )

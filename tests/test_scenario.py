@@ -50,7 +50,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "balance_tolerance": 0.0,
         },
         "solver": {
-            "name": "ipopt",
+            "name": "banded",
             "intervals": 20,
             "starts": 4,
             "tolerance": 1e-6,

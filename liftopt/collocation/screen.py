@@ -24,8 +24,8 @@ MORE_ITERATIONS = 400
 STRONGEST = 64.0
 # Postures that differ by less in every joint [rad] are one; so many of them are tried further.
 DIFFERENT, NEAREST = 0.1, 6
-# Limits used as much as the tightest, to this share, are named with it.
-AS_TIGHT = 0.98
+# So many limits are named that a posture exceeds.
+NAMED = 3
 # Ratio of the strengths at which the bisection ends.
 PRECISION = 1.01
 # A joint beyond its range by less than this is not named [rad].
@@ -154,13 +154,14 @@ def _strength(
             return None, posture
     if strong <= 1.0 or time.monotonic() > deadline:
         return None, held
-    tight = [use for use in _uses(problem, held) if use[0] > AS_TIGHT * _tightest(problem, held)[0]]
-    # Where several leave no room, none is enough alone; joints are named first.
-    tight.sort(key=lambda use: (use[1] != "torque", -use[0]))
-    _, constraint, who = tight[0]
+    # A squeeze relieves some joints: the limits that are exceeded belong together.
+    exceeded = sorted((use for use in _uses(problem, held) if use[0] > 1.0), reverse=True)
+    _, constraint, who = exceeded[0]
     words = {"torque": "the torque limit of", "grasp_force": "the grasp force cap of"}
-    what = " and ".join(f"{words[kind]} {whose}" for _, kind, whose in tight)
-    text = f"too weak at the {name} of the lift: holding still needs about {strong:.2f} times {what}"
+    shares = [strong, *(share for share, _, _ in exceeded[1:NAMED])]
+    pairs = zip(shares, exceeded[:NAMED], strict=True)
+    what = [f"{share:.2f} times {words[kind]} {whose}" for share, (_, kind, whose) in pairs]
+    text = f"too weak at the {name} of the lift: holding still needs about {' and '.join(what)}"
     return Obstacle(constraint, who, strong, "times the limit", text, share=strong - 1.0), held
 
 
