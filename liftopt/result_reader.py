@@ -69,13 +69,15 @@ def _solution(scenario: Scenario, data: dict[str, Any], attributes: dict[str, An
         raise ValueError("time does not increase")
     knots = len(time)
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
+    # Files from before there were moments have none.
+    moments = _array(data, "grasp_moment", forces.shape) if "grasp_moment" in data else np.zeros_like(forces)
     checks = tuple(Check(**check | _numbers(check, value=np.nan, limit=np.inf)) for check in record["checks"])
     return Solution(
         scenario=scenario,
         outcome=str(record["outcome"]),
         time=time,
-        agents=tuple(_agent(agent, data, forces[:, i]) for i, agent in enumerate(agents)),
-        held=_object(held, data, forces.reshape(knots, -1)),
+        agents=tuple(_agent(agent, data, forces[:, i], moments[:, i]) for i, agent in enumerate(agents)),
+        held=_object(held, data, forces.reshape(knots, -1), moments),
         urdfs=urdfs,
         objective=float(attributes["objective"]),
         objective_terms={name: float(attributes[f"objective_{name}"]) for name in record["objective_weights"]},
@@ -104,18 +106,18 @@ def _models(folder: Path) -> dict[str, str]:
     return texts
 
 
-def _agent(agent: Agent, data: dict[str, Any], force: Array) -> AgentTrajectory:
+def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:
     shape = (len(force), agent.model.nv)
     q, v, a, tau = (_array(data, f"{agent.name}_{kind}", shape) for kind in ("q", "v", "a", "tau"))
     moving = [name not in agent.pinned for name in list(agent.model.names)[1:]]
     # What follows from the motion and the forces is computed again rather than stored.
-    return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force), tau=tau)
+    return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force, moment), tau=tau)
 
 
-def _object(held: LiftedObject, data: dict[str, Any], forces: Array) -> ObjectTrajectory:
+def _object(held: LiftedObject, data: dict[str, Any], forces: Array, moments: Array) -> ObjectTrajectory:
     kinds = ("", "_velocity", "_acceleration")
     pose, rate, second = (_array(data, f"{held.name}_pose{kind}", (len(forces), 6)) for kind in kinds)
-    return object_trajectory(held, pose, rate, second, forces)
+    return object_trajectory(held, pose, rate, second, forces, moments)
 
 
 def _numbers(entry: dict[str, Any], **otherwise: float) -> dict[str, float]:
