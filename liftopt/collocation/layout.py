@@ -83,33 +83,41 @@ class Layout:
             whole[:, i, : grasp.size] = force[:, self.force_columns(i)]
         return whole
 
-    def select(self, part: int) -> sp.csc_matrix:
-        """Return S (K n_y, n_x): at each knot q, q', q'' and the forces of a part, as linear maps of x.
+    def kernel_forces(self, part: int) -> Index:
+        """Return the columns of ``force`` in the order that a part's kernel takes them, -1 for what is always zero.
 
-        The kernels for wrenches have room for every moment, and an agent's knows the object's attitude.
+        The kernels for wrenches have room for every moment.
         """
-        control, force = self.control[:, self.columns(part)], self.force[:, self.force_columns(part)]
-        n, (places, m) = control.shape[1], self._places(part)
-        attitude = self.control[:, -3:] if part < self.n_agents and not self.grasps[part].bare else self.control[:, :0]
-        n_y, rows, cols, values = 3 * n + m + attitude.shape[1], [], [], []
+        columns = np.arange(self.force.shape[1])
+        chosen = range(self.n_agents) if part == self.n_agents else (part,)
+        bare = all(self.grasps[i].bare for i in chosen)
+        rooms = np.full((len(chosen), FORCE_SIZE if bare else WRENCH_SIZE), -1)
+        for room, i in zip(rooms, chosen, strict=True):
+            room[: self.grasps[i].size] = columns[self.force_columns(i)]
+        return rooms.ravel()
+
+    def kernel_others(self, part: int) -> Index:
+        """Return the columns of ``control`` whose values a part's kernel takes after the forces: the attitude."""
+        follows = part < self.n_agents and not self.grasps[part].bare
+        return np.arange(self.control.shape[1])[-3:] if follows else np.zeros(0, np.int64)
+
+    def select(self, part: int) -> sp.csc_matrix:
+        """Return S (K n_y, n_x): at each knot q, q', q'', forces and others of a part, as linear maps of x."""
+        room, others = self.kernel_forces(part), self.control[:, self.kernel_others(part)]
+        control, force = self.control[:, self.columns(part)], self.force[:, room[room >= 0]]
+        n, m = control.shape[1], len(room)
+        n_y, rows, cols, values = 3 * n + m + others.shape[1], [], [], []
         for order, basis in enumerate(self.mesh.basis):
             knot, i = np.nonzero(basis)
             rows.append(n_y * knot[:, None] + order * n + np.arange(n))
             cols.append(control[i])
             values.append(np.repeat(basis[knot, i], n))
-        rows.append(n_y * np.arange(len(force))[:, None] + 3 * n + places)
+        rows.append(n_y * np.arange(len(force))[:, None] + 3 * n + np.flatnonzero(room >= 0))
         cols.append(force)
         values.append(np.ones(force.size))
         knot, i = np.nonzero(self.mesh.basis[0])
-        rows.append(n_y * knot[:, None] + 3 * n + m + np.arange(attitude.shape[1]))
-        cols.append(attitude[i])
-        values.append(np.repeat(self.mesh.basis[0][knot, i], attitude.shape[1]))
+        rows.append(n_y * knot[:, None] + 3 * n + m + np.arange(others.shape[1]))
+        cols.append(others[i])
+        values.append(np.repeat(self.mesh.basis[0][knot, i], others.shape[1]))
         row, col = (np.concatenate([part.ravel() for part in parts]) for parts in (rows, cols))
         return sp.csc_matrix((np.concatenate(values), (row, col)), shape=(len(force) * n_y, self.n_x))
-
-    def _places(self, part: int) -> tuple[Index, int]:
-        """Return where the forces of a part are among those its kernel takes, and how many it takes."""
-        chosen = self.grasps if part == self.n_agents else (self.grasps[part],)
-        room = FORCE_SIZE if all(grasp.bare for grasp in chosen) else WRENCH_SIZE
-        places = [room * i + np.arange(grasp.size) for i, grasp in enumerate(chosen)]
-        return np.concatenate(places), room * len(chosen)
