@@ -24,7 +24,7 @@ from liftopt.verify import verify
 
 BOTH = ("human.grasp=wrench", "robot.grasp=wrench")
 FLAT = (*BOTH, "human.contact=flat", "human.friction=0.3")
-CHEAP = ("solver.name=banded", "solver.starts=2", "solver.intervals=12")
+CHEAP = ("solver.name=banded", "solver.starts=2")
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def flat() -> tuple[Problem, RestToRestSpline, SolverResult]:
     """A flat hand and a gripper, solved by the banded solver from the first posture pair."""
     from liftopt.collocation.guess import posture_starts
 
-    scenario, spline = load_scenario("table5", FLAT), RestToRestSpline(12)
+    scenario, spline = load_scenario("table5", FLAT), RestToRestSpline(20)
     problem = Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), spline.mesh())
     deadline = time.monotonic() + 60.0
     result = Banded(problem).solve(posture_starts(problem, 1, 0, deadline)[0].x, deadline=deadline)
@@ -89,13 +89,13 @@ def test_share_moves_with_the_weights_only_where_it_can(solved: Callable[..., An
     Closed form: two forces at the ends of a level body that is at rest balance its weight midway only by halves.
     """
     shares = {}
-    for grasps in ((), BOTH):
-        for weight in (0.1, 1.0, 10.0):
+    for grasps, several in (((), (0.1, 10.0)), (BOTH, (0.1, 1.0, 10.0))):
+        for weight in several:
             weights = f"objective.human_weight={weight**0.5}", f"objective.robot_weight={weight**-0.5}"
             solution = solved("table5", *grasps, *weights, *CHEAP).solution
             assert solution.solved, solution.status
             shares[bool(grasps), weight] = np.array(load_share(solution)["agents"]["human"]["share"])
-    for weight in (0.1, 1.0, 10.0):
+    for weight in (0.1, 10.0):
         np.testing.assert_allclose(shares[False, weight][[0, -1]], 0.5, atol=1e-6)
     dear, even, cheap = (shares[True, weight] for weight in (10.0, 1.0, 0.1))
     assert (dear[[0, -1]] < even[[0, -1]] - 0.02).all() and (even[[0, -1]] < cheap[[0, -1]] - 0.02).all()
@@ -106,7 +106,7 @@ def test_flat_hand_neither_pulls_slides_nor_tips(flat: tuple[Problem, RestToRest
     """Every way to break a hold is put in on purpose; the verification names it, and names nothing before."""
     problem, spline, result = flat
     assert verify(problem, spline, result, 1e-6).passed
-    layout, knot = problem.layout, 5
+    layout, knot = problem.layout, 9
     force, moment = layout.force[knot, :3], layout.force[knot, 3:6]
     x = result.x
     assert x[layout.force[:, 2]].min() > 0.0
