@@ -26,6 +26,7 @@ from liftopt.solution import Solution
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
 
 Array = npt.NDArray[np.float64]
+TURNING = "grasp moments"
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,8 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
     Work is under ``"torques"``, ``"grasp forces"`` (of the object on an agent, of the agents on the object) and, for
     the object, ``"unbalanced"``: the residual of the balance (eq. 17), which the motion needs and nobody gives. In the
     books of all, ``"unbalanced"`` also holds what the grasp forces do where the grasp points part between knots.
+    Where grasps transmit moments, their work is apart under ``"grasp moments"``: in the books of all it is what they do on
+    hands that turn on the object.
 
     Args:
         solution: what was solved.
@@ -75,7 +78,15 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
         "torques": np.sum([agent.work["torques"] for agent in agents], axis=0),
         "unbalanced": np.sum([book.work["grasp forces"] for book in books], axis=0) + held.work["unbalanced"],
     }
+    if TURNING in held.work:
+        total[TURNING] = np.sum([book.work[TURNING] for book in books if TURNING in book.work], axis=0)
     return (*books, EnergyBooks("all", np.sum([book.change for book in books], axis=0), total))
+
+
+def turned_in_hands(books: tuple[EnergyBooks, ...]) -> float:
+    """Return the largest work that moments do because hands turn on the object, over the largest change of energy."""
+    total = books[-1]
+    return float(np.abs(total.work.get(TURNING, np.zeros(1))).max() / np.abs(total.change).max())
 
 
 def unexplained(books: tuple[EnergyBooks, ...]) -> float:
@@ -93,10 +104,10 @@ def _agent(model: Agent, agent: AgentTrajectory, time: Array, factor: int) -> En
         grip[k] = pin.getFrameVelocity(model.model, data, frame, pin.LOCAL_WORLD_ALIGNED).vector
     work = {
         "torques": _integral((agent.tau * agent.v).sum(axis=1), time, factor),
-        "grasp forces": _integral(
-            -(np.hstack([agent.grasp_force, agent.grasp_moment]) * grip).sum(axis=1), time, factor
-        ),
+        "grasp forces": _integral(-(agent.grasp_force * grip[:, :3]).sum(axis=1), time, factor),
     }
+    if agent.grasp.moments:
+        work[TURNING] = _integral(-(agent.grasp_moment * grip[:, 3:]).sum(axis=1), time, factor)
     return EnergyBooks(agent.name, (energy - energy[0])[::factor], work)
 
 
@@ -108,12 +119,14 @@ def _object(
         q, v, _ = free_flyer_state(held.pose[k], held.pose_velocity[k], held.pose_acceleration[k])
         energy[k] = pin.computeMechanicalEnergy(model.model, data, q, v)
         unbalanced[k] = held.wrench[k, :3] @ held.velocity[k, :3] + held.wrench[k, 3:] @ v[3:]
-    power = np.zeros(len(time))
+    power, turning = np.zeros(len(time)), np.zeros(len(time))
     for i, agent in enumerate(agents):
         lever, spin = held.grasp_position[:, i] - held.pose[:, :3], held.velocity[:, 3:]
         power += (agent.grasp_force * (held.velocity[:, :3] + np.cross(spin, lever))).sum(axis=1)
-        power += (agent.grasp_moment * spin).sum(axis=1)
+        turning += (agent.grasp_moment * spin).sum(axis=1)
     work = {"grasp forces": _integral(power, time, factor), "unbalanced": _integral(unbalanced, time, factor)}
+    if any(agent.grasp.moments for agent in agents):
+        work[TURNING] = _integral(turning, time, factor)
     return EnergyBooks(held.name, (energy - energy[0])[::factor], work)
 
 
