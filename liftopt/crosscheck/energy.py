@@ -60,8 +60,8 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
     Work is under ``"torques"``, ``"grasp forces"`` (of the object on an agent, of the agents on the object) and, for
     the object, ``"unbalanced"``: the residual of the balance (eq. 17), which the motion needs and nobody gives. In the
     books of all, ``"unbalanced"`` also holds what the grasp forces do where the grasp points part between knots.
-    Where grasps transmit moments, their work is apart under ``"grasp moments"``: in the books of all it is what they do on
-    hands that turn on the object.
+    Where grasps transmit moments, their work is apart under ``"grasp moments"``: in the books of all it is what they do
+    on hands that turn on the object.
 
     Args:
         solution: what was solved.

@@ -108,7 +108,9 @@ def _energy(solution: Solution) -> Iterator[Check]:
         yield Check(f"energy, work of torques and forces, {now.name}", now.relative, BOOKS, "relative", order)
     if any(agent.grasp.moments for agent in solution.agents):
         share = turned_in_hands(books)
-        yield Check("energy, moments on hands that turn", share, np.inf, "relative", "within their limits on the object")
+        yield Check(
+            "energy, moments on hands that turn", share, np.inf, "relative", "within their limits on the object"
+        )
     where = "balance and closure between the knots"
     yield Check("energy, left by the transcription", unexplained(books), UNEXPLAINED, "relative", where)
 
