@@ -63,6 +63,10 @@ def _named(problem: Problem, violation: Violation) -> Obstacle:
         "keep_in": f"the {who}'s grasp lies {amount:.3f} m outside its half-space {at}",
         "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
         "grasp_force": f"the {who}'s grasp needs {amount:.3g} N ({share}) more than its cap {at}",
+        "grasp_moment": f"the {who}'s grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
+        "grasp_turn": f"the {who}'s hand turns {amount:.0f} deg farther on the {held} than it may {at}",
+        "friction": f"flat hand: {who} it slides or lifts, {amount:.3g} N short of its friction {at}",
+        "pressure": f"flat hand: {who} it tips or turns, {amount:.3g} Nm beyond its breadth {at}",
         "velocity": f"{who} has to be {amount:.2g} {violation.unit} ({share}) faster than its speed limit {at}",
     }
     beyond = 0.0 if violation.unit == "m" else violation.share

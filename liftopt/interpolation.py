@@ -21,20 +21,23 @@ def refined(solution: Solution, factor: int) -> Solution:
     and ground reaction are RNEA's on that motion. Objective and verification stay those of the knots.
     """
     time = _finer(solution.time, factor)
-    agents, forces = [], []
+    agents, forces, moments = [], [], []
     for model, agent in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q, v, a = motion_between(solution.time, agent.q, agent.v, agent.a, time)
-        force = _linear(solution.time, agent.grasp_force, time)
+        force, moment = (_linear(solution.time, each, time) for each in (agent.grasp_force, agent.grasp_moment))
         moving = agent.moving
-        agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force))
+        agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force, moment))
         forces.append(force)
+        moments.append(moment)
     held = solution.held
     motion = motion_between(solution.time, held.pose, held.pose_velocity, held.pose_acceleration, time)
     return replace(
         solution,
         time=time,
         agents=tuple(agents),
-        held=object_trajectory(object_of(solution.scenario, solution.urdfs), *motion, np.hstack(forces)),
+        held=object_trajectory(
+            object_of(solution.scenario, solution.urdfs), *motion, np.hstack(forces), np.hstack(moments)
+        ),
     )
 
 

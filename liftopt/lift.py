@@ -129,6 +129,7 @@ class Search:
         """Return the solution, or the best iterate with what is in the way and which changes would help."""
         if best.solved:
             return self.solution(best)
+        self.say(best.outcome)
         remedies = Remedies(self, self.nearest, self.end).against(self.obstacles)
         return replace(self.solution(best), reasons=self.obstacles, remedies=remedies)
 

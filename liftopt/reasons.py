@@ -10,7 +10,7 @@ class Obstacle:
     """What is in the way.
 
     Attributes:
-        constraint: ``"closure"``, ``"keep_in"``, ``"torque"``, ``"grasp_force"`` or ``"velocity"``; see ``Block``.
+        constraint: ``"closure"``, ``"torque"``, ``"velocity"``...; see ``Block``.
         who: agent, joint or object.
         amount: how far it is from being met, in ``unit``.
         unit: of ``amount``; ``"times the limit"`` for strength.

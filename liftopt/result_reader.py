@@ -67,12 +67,14 @@ def _solution(
     if not np.allclose(time[[0, -1]], (0.0, scenario.duration), rtol=0.0, atol=SAME_TIME * scenario.duration):
         raise ValueError(f"it lasts from {time[0]:g} to {time[-1]:g} s, the scenario beside it {scenario.duration:g} s")
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
+    # Files from before there were moments have none.
+    moments = _array(data, "grasp_moment", forces.shape) if "grasp_moment" in data else np.zeros_like(forces)
     return Solution(
         scenario=scenario,
         outcome=record.outcome,
         time=time,
-        agents=tuple(_agent(agent, data, forces[:, i]) for i, agent in enumerate(agents)),
-        held=_object(held, data, forces.reshape(knots, -1)),
+        agents=tuple(_agent(agent, data, forces[:, i], moments[:, i]) for i, agent in enumerate(agents)),
+        held=_object(held, data, forces.reshape(knots, -1), moments),
         urdfs=urdfs,
         objective=float(attributes["objective"]),
         objective_terms={name: float(attributes[f"objective_{name}"]) for name in record.objective_weights},
@@ -90,18 +92,18 @@ def _solution(
     )
 
 
-def _agent(agent: Agent, data: dict[str, Any], force: Array) -> AgentTrajectory:
+def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:
     shape = (len(force), agent.model.nv)
     q, v, a, tau = (_array(data, f"{agent.name}_{kind}", shape) for kind in ("q", "v", "a", "tau"))
     moving = [name not in agent.pinned for name in list(agent.model.names)[1:]]
     # What follows from the motion and the forces is computed again rather than stored.
-    return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force), tau=tau)
+    return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force, moment), tau=tau)
 
 
-def _object(held: LiftedObject, data: dict[str, Any], forces: Array) -> ObjectTrajectory:
+def _object(held: LiftedObject, data: dict[str, Any], forces: Array, moments: Array) -> ObjectTrajectory:
     kinds = ("", "_velocity", "_acceleration")
     pose, rate, second = (_array(data, f"{held.name}_pose{kind}", (len(forces), 6)) for kind in kinds)
-    return object_trajectory(held, pose, rate, second, forces)
+    return object_trajectory(held, pose, rate, second, forces, moments)
 
 
 def _array(data: dict[str, Any], name: str, shape: tuple[int, ...]) -> Array:

@@ -86,7 +86,10 @@ def _variables(solution: Solution) -> dict[str, Variable]:
             ("tau", agent.tau, "N m", "joint torque (force in N for the prismatic GT joints)"),
         ):
             variables[f"{agent.name}_{kind}"] = (dimensions, values, unit, f"{agent.name} {meaning}")
-    force = np.stack([agent.grasp_force for agent in solution.agents], axis=1)
+    force, moment = (
+        np.stack([getattr(agent, name) for agent in solution.agents], axis=1)
+        for name in ("grasp_force", "grasp_moment")
+    )
     body = f"of the {name}, world axes, at its centre of mass: linear then angular"
     return variables | {
         f"{name}_position": (("time", "xyz"), held.pose[:, :3], "m", f"centre of mass of the {name} in the world"),
@@ -99,6 +102,10 @@ def _variables(solution: Solution) -> dict[str, Variable]:
             ("time", "pose"), held.pose_acceleration, "m/s^2, rad/s^2", "their second derivatives",
         ),
         "grasp_force": (("time", "grasp", "xyz"), force, "N", f"force of each agent on the {name}, world axes"),
+        "grasp_moment": (
+            ("time", "grasp", "xyz"), moment, "N m",
+            f"moment of each agent on the {name} about its grasp point, world axes; 0 for a point grasp",
+        ),
         "grasp_position": (("time", "grasp", "xyz"), held.grasp_position, "m", f"grasp points on the {name}, world"),
         "ground_reaction_force": (
             ("time", "xyz"), solution.ground_reaction_force, "N", "force of the ground on the human, world axes"

@@ -24,6 +24,7 @@ else:
     import tomli as tomllib
 
 SHIPPED = Path(__file__).parent / "scenarios"
+GRASPS = ("point", "wrench")
 LARGEST_FILE = 100_000  # bytes; a scenario has some 30 lines
 MOST_DOTS = 200  # in a line; the longest key has two
 
@@ -35,6 +36,12 @@ class Human:
     stature: Annotated[float, Number("height of the person", "m", 1.2, 2.2)]
     mass: Annotated[float, Number("body mass of the person", "kg", 30.0, 200.0)]
     sex: Annotated[str, Choice("whose segment data to use", ("male", "female"))]
+    grasp: Annotated[str, Choice("a force at a point, or a hand that also transmits moments", GRASPS)] = "point"
+    # Both largest moments are estimates: about what a wrist holds in the weaker directions, and a small gripper.
+    max_grasp_moment: Annotated[float, Number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 10.0
+    grasp_turn_deg: Annotated[float, Number("largest turn of the hand in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
+    contact: Annotated[str, Choice("a hand that grips, or a flat one that only pushes up", ("grip", "flat"))] = "grip"
+    friction: Annotated[float, Number("friction coefficient under a flat hand", "", 0.01, 10.0)] = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +59,9 @@ class Robot:
     model: Annotated[str, Choice("which robot", ("sawyer",))]
     base_height: Annotated[float, Number("height of the robot's base above the floor", "m", 0.0, 2.0)] = 0.915
     tool: Tool = field(default_factory=Tool)
+    grasp: Annotated[str, Choice("a force at a point, or a gripper that also transmits moments", GRASPS)] = "point"
+    max_grasp_moment: Annotated[float, Number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 5.0
+    grasp_turn_deg: Annotated[float, Number("largest turn of the gripper in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,6 +109,7 @@ class Objective:
 class Limits:
     """Limits that belong to the task rather than to an agent."""
 
+    table_roll_deg: Annotated[float, Number("largest roll of the object in a wrench grasp", "deg", 0.0, 60.0)] = 10.0
     table_pitch_deg: Annotated[float, Number("largest pitch of the object", "deg", 0.0, 60.0)] = 10.0
     table_yaw_deg: Annotated[float, Number("largest yaw of the object", "deg", 0.0, 60.0)] = 10.0
     max_grasp_force: Annotated[float, Number("largest grasp force", "N", 0.0, 10_000.0, open_low=True)] = 200.0

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from liftopt.collocation.task import LiftTask
-from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.agent import Agent, Grasp, LiftedObject
+from liftopt.multibody.human import HAND_UNDER_EDGE, Subject, human_agent
+from liftopt.multibody.sawyer import LEVEL_TOOL, sawyer_agent
 from liftopt.multibody.table import lifted_table
-from liftopt.scenario import GraspPose, Scenario, Table
+from liftopt.scenario import GraspPose, Human, Robot, Scenario, Table
 
+Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
 URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 ROOM = 5.0  # [m]: half the width of the room the object may move in
@@ -32,19 +35,29 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 def human_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the person; ``urdfs`` as in ``agents_of``."""
     human, urdf = scenario.human, (urdfs or {}).get(URDF_FILES["human"])
-    return human_agent(Subject(human.stature, human.mass, "male" if human.sex == "male" else "female"), urdf)
+    agent = human_agent(Subject(human.stature, human.mass, "male" if human.sex == "male" else "female"), urdf)
+    friction = human.friction if human.contact == "flat" else None
+    return replace(agent, grasp=replace(_grasp(human, HAND_UNDER_EDGE), friction=friction))
 
 
 def robot_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the robot; ``urdfs`` as in ``agents_of``."""
     robot = scenario.robot
-    return sawyer_agent(
+    agent = sawyer_agent(
         standing_distance=scenario.task.standing_distance,
         base_height=robot.base_height,
         tool_length=robot.tool.length,
         tool_mass=robot.tool.mass,
         urdf=(urdfs or {}).get(URDF_FILES["robot"]),
     )
+    return replace(agent, grasp=_grasp(robot, LEVEL_TOOL))
+
+
+def _grasp(who: Human | Robot, reference: Array) -> Grasp:
+    """Return someone's grasp; ``reference`` (3, 3) is the hand's orientation in the world on a level object."""
+    if who.grasp == "point":
+        return Grasp(R_hand_object=reference.T)
+    return Grasp(True, who.max_grasp_moment, math.radians(who.grasp_turn_deg), reference.T)
 
 
 def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> LiftedObject:
@@ -57,13 +70,15 @@ def task_of(scenario: Scenario) -> LiftTask:
     """Return the task: poses at both ends by the height and tilt of the grasp points, sideways free."""
     limits, objective = scenario.limits, scenario.objective
     pitch, yaw = math.radians(limits.table_pitch_deg), math.radians(limits.table_yaw_deg)
+    # Two point grasps cannot turn the object about the line through them: its roll is locked.
+    turnable = "wrench" in (scenario.human.grasp, scenario.robot.grasp)
+    roll = math.radians(limits.table_roll_deg) if turnable else 0.0
     return LiftTask(
         duration=scenario.duration,
         start=_pose(scenario.task.start, scenario.table),
         end=_pose(scenario.task.end, scenario.table),
-        # Two point grasps cannot turn the object about the line through them: its roll is locked.
-        pose_lower=np.array([-ROOM, -ROOM, 0.0, 0.0, -pitch, -yaw]),
-        pose_upper=np.array([ROOM, ROOM, ROOM, 0.0, pitch, yaw]),
+        pose_lower=np.array([-ROOM, -ROOM, 0.0, -roll, -pitch, -yaw]),
+        pose_upper=np.array([ROOM, ROOM, ROOM, roll, pitch, yaw]),
         pose_velocity=np.full(6, OBJECT_SPEED),
         agent_weights=(objective.human_weight, objective.robot_weight),
         acceleration_weight=objective.acceleration_weight,
@@ -77,7 +92,7 @@ def _pose(grasp: GraspPose, table: Table) -> np.ndarray[tuple[int], np.dtype[np.
     """Return the pose of the centre of mass from where the grasp points are.
 
     ``height`` is midway between them, ``human_distance`` the human's. The centre of mass lies half the table's height
-    off that middle, along the body's Z axis; half the depth, along its X axis, leads there from the human's grasp point.
+    off that middle, along the body's Z axis; half the depth along its X axis leads there from the human's grasp point.
     """
     pitch = math.radians(grasp.pitch_deg)
     forward = (table.depth * math.cos(pitch) + table.height * math.sin(pitch)) / 2

@@ -10,21 +10,22 @@ import os
 import sys
 from collections.abc import Sequence
 
-from liftopt.collocation.dynamics import agent_functions, object_functions
 from liftopt.collocation.lanes import load_wide
-from liftopt.collocation.problem import Team
-from liftopt.scenario import load_scenario
+from liftopt.collocation.problem import Team, kernel_requests
+from liftopt.scenario import GRASPS, load_scenario
 from liftopt.scene import agents_of, object_of
 
 
 def ship(folder: str) -> bool:
     """Compile the kernels into a folder and return whether all are there."""
     os.environ["LIFTOPT_CACHE"] = folder
-    scenario = load_scenario()
-    team = Team.of(agents_of(scenario), object_of(scenario), _say)
-    builders = [agent_functions] * len(team.agents) + [object_functions]
-    wide = load_wide(list(zip(builders, team.topologies, strict=True)), _say)
-    return wide is not None and all(kernel.compiled for kernel in team.kernels)
+    whole = True
+    for grasp in GRASPS:
+        scenario = load_scenario(overrides=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
+        team = Team.of(agents_of(scenario), object_of(scenario), _say)
+        wide = load_wide(kernel_requests(team.agents, team.held), _say)
+        whole = whole and wide is not None and all(kernel.compiled for kernel in team.kernels)
+    return whole
 
 
 def main(arguments: Sequence[str]) -> int:

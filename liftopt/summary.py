@@ -72,6 +72,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "joints": {agent.name: _joints(solution, agent) for agent in solution.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(solution),
+        "grasp_moment": _grasp_moment(solution),
         "ground_reaction": _ground_reaction(solution),
         "objective": _objective(solution),
         "solver": {
@@ -155,6 +156,16 @@ def _grasp_force(solution: Solution) -> dict[str, Any]:
         squeeze = 0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line)
         result["squeeze"] = _peak(squeeze, solution.time, "N")
     return result
+
+
+def _grasp_moment(solution: Solution) -> dict[str, Any]:
+    """Return the peak moment of each agent whose grasp transmits one, and its limit."""
+    return {
+        agent.name: _peak(np.linalg.norm(agent.grasp_moment, axis=1), solution.time, "Nm")
+        | {"limit_Nm": _number(agent.grasp.max_moment)}
+        for agent in solution.agents
+        if agent.grasp.moments
+    }
 
 
 def _ground_reaction(solution: Solution) -> dict[str, Any]:

@@ -135,6 +135,10 @@ def _forces(summary: dict[str, Any]) -> Table:
             "" if peak["peak_N"] is None else f"{peak['peak_N'] / grasp['limit_N']:.0%} of {grasp['limit_N']:g} N"
         )
         _force_row(table, f"grasp force, {agent}", peak, of_limit)
+    for agent, peak in summary["grasp_moment"].items():
+        limit = peak["limit_Nm"]
+        of_limit = "" if peak["peak_Nm"] is None else f"{peak['peak_Nm'] / limit:.0%} of {limit:g} Nm"
+        _force_row(table, f"grasp moment, {agent}", peak, of_limit)
     if "squeeze" in grasp:
         _force_row(table, "squeeze between the grasps", grasp["squeeze"], "+ presses the object together")
     of_weight = ground["vertical_over_body_weight"]

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.multibody.agent import Agent, JointLimits, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, LiftedObject
 
 Array = npt.NDArray[np.float64]
 
@@ -28,9 +28,12 @@ class AgentTrajectory:
         q, v, a: (K, n) position, velocity, acceleration [rad or m, per s, per s^2].
         tau: (K, n) generalised forces of RNEA with the grasp reaction [Nm or N].
         grasp_force: (K, 3) force on the object, world axes [N].
+        grasp_moment: (K, 3) moment on the object about the grasp point, world axes [Nm]; 0 where the grasp has none.
         grasp_position: (K, 3) the agent's grasp point in the world [m].
+        grip_rotation: (K, 3, 3) grip axes in the world: the object's if the hand is in its reference orientation.
         ground_force, ground_moment: (K, 3) reaction of the ground on the agent at its base point, world axes.
         limits: of the moving joints.
+        grasp: what the hold transmits.
     """
 
     name: str
@@ -41,15 +44,19 @@ class AgentTrajectory:
     a: Array
     tau: Array
     grasp_force: Array
+    grasp_moment: Array
     grasp_position: Array
+    grip_rotation: Array
     ground_force: Array
     ground_moment: Array
     limits: JointLimits
+    grasp: Grasp
 
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        over_time = ("q", "v", "a", "tau", "grasp_force", "grasp_position", "ground_force", "ground_moment")
-        return replace(self, **{name: getattr(self, name)[::step] for name in over_time})
+        constant = ("name", "joint_names", "moving", "limits", "grasp")
+        over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
+        return replace(self, **over_time)
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,7 @@ class ObjectTrajectory:
         quaternion: (K, 4) x y z w.
         velocity, acceleration: (K, 6) linear then angular, world axes, at the centre of mass.
         grasp_position: (K, agents, 3) its grasp points in the world [m].
-        wrench: (K, 6) RNEA less the grasp forces: force along world axes [N], moment about body axes [Nm]; eq. 17.
+        wrench: (K, 6) RNEA less what the grasps do: force along world axes [N], moment about body axes [Nm]; eq. 17.
     """
 
     name: str
@@ -82,30 +89,40 @@ class ObjectTrajectory:
         return replace(self, **over_time)
 
 
-def agent_trajectory(agent: Agent, q: Array, v: Array, a: Array, force: Array) -> AgentTrajectory:
-    """Return the trajectory of an agent from its moving joints (K, n_moving) and its force on the object (K, 3)."""
+def agent_trajectory(
+    agent: Agent, q: Array, v: Array, a: Array, force: Array, moment: Array | None = None
+) -> AgentTrajectory:
+    """Return the trajectory of an agent from its moving joints (K, n_moving), its force and moment (K, 3) there.
+
+    Without a moment there is none; both act on the object.
+    """
     model, names = agent.model, tuple(list(agent.model.names)[1:])
     moving = np.array([name not in agent.pinned for name in names])
     full_q, full_v, full_a = (np.zeros((len(q), model.nv)) for _ in range(3))
     full_q[:, moving], full_v[:, moving], full_a[:, moving] = q, v, a
     data, frame, force = model.createData(), model.frames[model.getFrameId(agent.grasp_frame)], np.array(force, float)
-    carrier, lever = frame.parentJoint, frame.placement.translation
+    moment = np.zeros_like(force) if moment is None else np.array(moment, float)
+    carrier, lever, grip = frame.parentJoint, frame.placement.translation, np.zeros((len(q), 3, 3))
     tau, point, root = np.zeros_like(full_q), np.zeros((len(q), 3)), np.zeros((len(q), 6))
     slopes = np.zeros((len(q), 6, model.nv))
     for k in range(len(q)):
         slopes[k] = pin.computeJointJacobians(model, data, full_q[k]).reshape(6, -1)  # of one joint it is flat
         point[k] = data.oMi[carrier].act(lever)
+        grip[k] = data.oMi[carrier].rotation
         tau[k] = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
         # The wrench that the first joint transmits holds all that moves against gravity and its own motion; what is
         # fixed to the ground (a robot's pedestal) is not part of it.
         root[k] = data.oMi[1].act(data.f[1]).vector
     # The Jacobians (linear, then angular) are about the world's origin, so the force has its moment about it.
-    tau += np.einsum("kci,kc->ki", slopes, np.hstack([force, cross(point, force)])) * bearing(model, carrier)
+    wrench = np.hstack([force, cross(point, force) + moment])
+    tau += np.einsum("kci,kc->ki", slopes, wrench) * bearing(model, carrier)
     p_world_base = model.jointPlacements[1].translation
-    moment = root[:, 3:] - cross(p_world_base, root[:, :3]) + cross(point - p_world_base, force)
+    ground_moment = root[:, 3:] - cross(p_world_base, root[:, :3]) + cross(point - p_world_base, force) + moment
     return AgentTrajectory(
-        agent.name, names, moving, full_q, full_v, full_a, tau, force, point, root[:, :3] + force, moment, agent.limits
-    )
+        agent.name, names, moving, full_q, full_v, full_a, tau, force, moment, point,
+        grip @ frame.placement.rotation @ agent.grasp.R_hand_object,
+        root[:, :3] + force, ground_moment, agent.limits, agent.grasp,
+    )  # fmt: skip
 
 
 def bearing(model: pin.Model, carrier: int) -> Array:
@@ -116,8 +133,13 @@ def bearing(model: pin.Model, carrier: int) -> Array:
     return on
 
 
-def object_trajectory(held: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array) -> ObjectTrajectory:
-    """Return the object's trajectory from its six coordinates and rates (K, 6) and all grasp forces (K, 3 agents)."""
+def object_trajectory(
+    held: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array, moments: Array | None = None
+) -> ObjectTrajectory:
+    """Return the object's trajectory from its six coordinates and rates (K, 6) and all grasps' forces and moments.
+
+    Both are (K, 3 agents); without moments there are none.
+    """
     model, data = held.model, held.model.createData()
     frames = [model.getFrameId(name) for name in held.grasp_frames]
     rotation, (q, v, a) = attitude(x[:, 3:])[0], free_flyer_state(x, xdot, xddot)
@@ -129,6 +151,8 @@ def object_trajectory(held: LiftedObject, x: Array, xdot: Array, xddot: Array, f
             point[k, i] = data.oMf[frame].translation
     force = np.reshape(forces, (len(x), len(frames), 3))
     moment = cross(point - x[:, None, :3], force).sum(axis=1)
+    if moments is not None:
+        moment += np.reshape(moments, force.shape).sum(axis=1)
     wrench = np.hstack([turned(rotation, generalized[:, :3]) - force.sum(axis=1),
                         generalized[:, 3:] - turned(rotation.swapaxes(1, 2), moment)])  # fmt: skip
     velocity = np.hstack([xdot[:, :3], turned(rotation, v[:, 3:])])
@@ -171,6 +195,13 @@ def attitude(angles: Array) -> tuple[Array, Array]:
     spin = np.stack([cp * cy, sy, zero, -cp * sy, cy, zero, sp, zero, one], axis=-1)
     shape = (*np.shape(angles)[:-1], 3, 3)
     return rotation.reshape(shape), spin.reshape(shape)
+
+
+def angle_between(one: Array, other: Array) -> Array:
+    """Return the angle (K,) from rotations (K, 3, 3) to others [rad]."""
+    # By the chord rather than the cosine, which is flat at zero: |R - S| = 2 sqrt(2) sin(angle / 2).
+    chord = np.linalg.norm(one - other, axis=(1, 2))
+    return np.asarray(2.0 * np.arcsin(np.minimum(1.0, chord / np.sqrt(8.0))))
 
 
 def quaternion(angles: Array) -> Array:

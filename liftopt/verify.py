@@ -7,13 +7,14 @@ import numpy.typing as npt
 
 from liftopt.checks import AT_KNOTS, Check, Verification
 from liftopt.collocation.constraints import BALANCE_ROWS, served_rows
+from liftopt.collocation.flat_hand import flat_hand_rows
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
-from liftopt.trajectory import AgentTrajectory
+from liftopt.trajectory import AgentTrajectory, angle_between, attitude, turned
 
 Array = npt.NDArray[np.float64]
 FINER = 10
@@ -57,8 +58,10 @@ def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64])
 
 def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
     """Eq. 17 on the rows that the grasps serve; the other one, and all between knots, are reported."""
-    tolerance, other = problem.task.balance_tolerance, problem.team.held.unserved_row()
-    served = served_rows(problem.team.held, tolerance)
+    tolerance, team = problem.task.balance_tolerance, problem.team
+    served = served_rows(team.agents, team.held, tolerance)
+    moments = any(grasp.moments for grasp in team.grasps)
+    other = None if moments else team.held.unserved_row()
     labels = [f"{knots.held.name} {row}" for row in BALANCE_ROWS]
     pick = [labels[r] for r in served]
     excess = np.maximum(np.abs(knots.held.wrench[:, served]) - tolerance, 0.0)
@@ -98,8 +101,28 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         if model.keep_in is not None:
             short = model.keep_in.offset - trajectory.grasp_position @ model.keep_in.normal
             checks.append(_worst("grasp in front", short[:, None], limit, "m", [model.name], motion.time))
+    checks += _holds(motion, limit)
     # np.maximum lets a NaN through where max would hide it.
     return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
+
+
+def _holds(motion: Motion, limit: float) -> list[Check]:
+    """What holds that transmit more than a force at a point keep to: moment, angle on the object, friction."""
+    checks, rotation = [], attitude(motion.held.pose[:, 3:])[0]
+    for agent in motion.agents:
+        grasp, own = agent.grasp, [agent.name]
+        if grasp.moments:
+            excess = np.linalg.norm(agent.grasp_moment, axis=1) - grasp.max_moment
+            checks.append(_worst("grasp moment cap", excess[:, None], limit, "Nm", own, motion.time))
+            angle = angle_between(rotation, agent.grip_rotation) - grasp.max_turn
+            checks.append(_worst("hand on the object", angle[:, None], limit, "rad", own, motion.time))
+        back = rotation.swapaxes(1, 2)
+        local = np.hstack([turned(back, agent.grasp_force), turned(back, agent.grasp_moment)])
+        for rows in flat_hand_rows(grasp):
+            worst, unit = -rows.room(local), "N" if rows.name == "friction" else "Nm"
+            ways = [f"{agent.name} {label}" for label in rows.labels]
+            checks.append(_worst(f"{rows.name} of the hand", worst, limit, unit, ways, motion.time))
+    return checks
 
 
 def _ends(problem: Problem, motion: Motion) -> list[Check]:

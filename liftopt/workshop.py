@@ -6,8 +6,8 @@ from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
 from liftopt.collocation.kernels import Say
-from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.postures import PostureSolver
+from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.banded_nlp import wide_kernels
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions

@@ -92,6 +92,26 @@ def table(entries: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
+def gaps(entries: dict[int, dict[str, Any]], yardstick: dict[int, dict[str, Any]]) -> str:
+    """Return by how much the objectives are above those of a run with more starts, in one line."""
+    both = [i for i in entries if i in yardstick and entries[i]["outcome"] == yardstick[i]["outcome"] == "solved"]
+    # Objectives on different meshes cannot be compared.
+    same = [i for i in both if entries[i]["intervals"] == yardstick[i]["intervals"]]
+    if not same:
+        return "no scenario in common"
+    above = np.array([entries[i]["objective"] / min(yardstick[i]["objective"], entries[i]["objective"]) for i in same])
+    above = 100 * (above - 1)
+    return (
+        f"objective above the long run's on {len(same)} scenarios ({len(both) - len(same)} more on another mesh): "
+        f"median {np.median(above):.2f} %, 95 % below {np.quantile(above, 0.95):.2f} %, most {above.max():.2f} %"
+    )
+
+
+def _read(file: Path) -> dict[int, dict[str, Any]]:
+    lines = file.read_text().splitlines() if file.exists() else []
+    return {entry["index"]: entry for entry in map(json.loads, lines)}
+
+
 def main() -> int:
     """Run what is not there yet and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -101,10 +121,10 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, help="go on from this scenario")
     parser.add_argument("--last", type=int, default=None, help="stop before this scenario")
     parser.add_argument("--set", action="append", default=[], dest="overrides", metavar="KEY=VALUE")
+    parser.add_argument("--against", type=Path, help="the file of a run with more starts, to compare objectives")
     parser.add_argument("--table", action="store_true", help="only sum up what is there")
     args = parser.parse_args()
-    lines = args.file.read_text().splitlines() if args.file.exists() else []
-    entries = {entry["index"]: entry for entry in map(json.loads, lines)}
+    entries = _read(args.file)
     workshop = Workshop()
     if not args.table:
         for i, overrides in enumerate(drawn(args.count, args.seed)[: args.last]):
@@ -114,6 +134,8 @@ def main() -> int:
             with args.file.open("a") as out:
                 out.write(json.dumps(entries[i]) + "\n")
     print(table(list(entries.values())))
+    if args.against:
+        print(gaps(entries, _read(args.against)))
     return 0
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from liftopt.multibody.agent import Grasp
 from liftopt.scenario import load_scenario
 from liftopt.solution import Solution
 
@@ -52,6 +53,8 @@ def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float,
         tau=tau,
         limits=limits,
         grasp_force=force,
+        grasp_moment=np.zeros_like(force),
+        grasp=Grasp(),
         grasp_position=np.tile(grasp, (knots, 1)),
     )
 

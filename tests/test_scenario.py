@@ -34,8 +34,24 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
         "schema": 1,
         "name": "table5",
         "duration": 2.0,
-        "human": {"stature": 1.75, "mass": 75.0, "sex": "male"},
-        "robot": {"model": "sawyer", "base_height": 0.915, "tool": {"length": 0.15, "mass": 0.4}},
+        "human": {
+            "stature": 1.75,
+            "mass": 75.0,
+            "sex": "male",
+            "grasp": "point",
+            "max_grasp_moment": 10.0,
+            "grasp_turn_deg": 30.0,
+            "contact": "grip",
+            "friction": 0.5,
+        },
+        "robot": {
+            "model": "sawyer",
+            "base_height": 0.915,
+            "tool": {"length": 0.15, "mass": 0.4},
+            "grasp": "point",
+            "max_grasp_moment": 5.0,
+            "grasp_turn_deg": 30.0,
+        },
         "table": {"mass": 2.0, "depth": 0.45, "width": 0.31, "height": 0.02},
         "task": {
             "standing_distance": 1.9,
@@ -44,6 +60,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
         },
         "objective": {"human_weight": 1.0, "robot_weight": 1.0, "acceleration_weight": 0.5, "force_weight": 0.01},
         "limits": {
+            "table_roll_deg": 10.0,
             "table_pitch_deg": 10.0,
             "table_yaw_deg": 10.0,
             "max_grasp_force": 200.0,
@@ -130,7 +147,18 @@ NUMBERS = [(key, kind) for key, kind in LEAVES if isinstance(kind, (Number, Whol
 
 @pytest.mark.parametrize(("key", "kind"), NUMBERS, ids=[key for key, _ in NUMBERS])
 def test_every_number_refuses_all_but_finite_numbers_in_its_range(key: str, kind: Number | Whole) -> None:
-    bad = ["nan", "inf", "-inf", "true", '"1"', "[1.0]", "{}", "1979-05-27", f"{2 * kind.high + 1!r}", f"{kind.low - 1e-3!r}"]
+    bad = [
+        "nan",
+        "inf",
+        "-inf",
+        "true",
+        '"1"',
+        "[1.0]",
+        "{}",
+        "1979-05-27",
+        f"{2 * kind.high + 1!r}",
+        f"{kind.low - 1e-3!r}",
+    ]
     for value in bad:
         with pytest.raises(InputError, match=f"^{re.escape(key)} = .*: must be a (whole )?number") as caught:
             with_overrides(DEFAULT, [f"{key}={value}"])

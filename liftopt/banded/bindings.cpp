@@ -45,7 +45,7 @@ banded::KernelPart part_of(const py::dict& given) {
   part.value = reinterpret_cast<banded::Kernel>(given["value"].cast<std::uintptr_t>());
   part.derivatives = reinterpret_cast<banded::Kernel>(given["derivatives"].cast<std::uintptr_t>());
   part.columns = {given["first"].cast<int>(), given["coordinates"].cast<int>(),
-                  integers_of(given["forces"].cast<Integers>())};
+                  integers_of(given["forces"].cast<Integers>()), integers_of(given["others"].cast<Integers>())};
   part.n_c = given["n_c"].cast<int>();
   part.n_p = given["n_p"].cast<int>();
   part.n_squared = given["n_squared"].cast<int>();

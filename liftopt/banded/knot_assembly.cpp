@@ -9,7 +9,7 @@
 namespace banded {
 namespace {
 
-// A variable of a knot: an order of a coordinate, or a force.
+// A variable of a knot: an order of a coordinate, or a force; of index -1 if it is always zero.
 struct Variable {
   bool is_force;
   int index, order;
@@ -17,7 +17,9 @@ struct Variable {
 
 Variable variable(const PartColumns& columns, int y) {
   const int n = columns.coordinates;
-  if (y >= kOrders * n) return {true, columns.forces.at(y - kOrders * n), 0};
+  const int after = y - kOrders * n, forces = static_cast<int>(columns.forces.size());
+  if (after >= forces) return {false, columns.others.at(after - forces), 0};
+  if (after >= 0) return {true, columns.forces[after], 0};
   return {false, columns.first + y % n, y / n};
 }
 
@@ -48,6 +50,7 @@ void KnotAssembly::plan_rows() {
       for (std::size_t e = 0; e < part.jacobian_row.size(); ++e)
         if (part.jacobian_row[e] == term.output) {
           const Variable at = variable(part.columns, part.jacobian_column[e]);
+          if (at.index < 0) continue;
           slopes.push_back({at, nlp_.first_slope(term.part) + static_cast<int>(e), term.factor});
           support.all_orders |= at.order > 0;
         }
@@ -77,6 +80,7 @@ Pair& KnotAssembly::pair(Pair::Kind kind, int one, int other) {
 
 void KnotAssembly::plan_pairs() {
   const auto add_curvature = [&](Variable a, Variable b, int from) {
+    if (a.index < 0 || b.index < 0) return;
     if (std::make_tuple(b.is_force, b.index) < std::make_tuple(a.is_force, a.index)) std::swap(a, b);
     if (a.is_force) {
       pair(Pair::forces, a.index, b.index).curvatures.push_back({0, from});

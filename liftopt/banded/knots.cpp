@@ -51,20 +51,43 @@ void Knots::select(int group, const std::vector<PartColumns>& parts, const doubl
                                         part.coordinates, y);
     y += kOrders * part.coordinates * lanes_;
     for (int column : part.forces) {
-      for (int l = 0; l < knots_of(group); ++l) y[l] = x[force(group * lanes_ + l, column)];
+      for (int l = 0; l < knots_of(group); ++l) y[l] = column < 0 ? 0.0 : x[force(group * lanes_ + l, column)];
+      y += lanes_;
+    }
+    for (int column : part.others) {
+      std::fill_n(y, lanes_, 0.0);
+      for (int i = 0; i < width_; ++i) {
+        const double *value = basis(group) + i * lanes_, *near = near_.data() + (i * coordinates_ + column) * lanes_;
+        for (int l = 0; l < lanes_; ++l) y[l] += value[l] * near[l];
+      }
       y += lanes_;
     }
   }
 }
 
 void Knots::add_selected(int group, const std::vector<PartColumns>& parts, const double* y, double* x) {
+  const double* from = y;
   for (const PartColumns& part : parts) {
     lane_operations(lanes_).interpolate_transposed(basis(group), width_, y, coordinates_, part.coordinates,
                                                    near_.data() + part.first * lanes_);
     y += kOrders * part.coordinates * lanes_;
     for (int column : part.forces) {
-      for (int l = 0; l < knots_of(group); ++l) x[force(group * lanes_ + l, column)] += y[l];
+      for (int l = 0; column >= 0 && l < knots_of(group); ++l) x[force(group * lanes_ + l, column)] += y[l];
       y += lanes_;
+    }
+    y += static_cast<int>(part.others.size()) * lanes_;
+  }
+  // Added to what the parts whose coordinates they are have set.
+  for (const PartColumns& part : parts) {
+    from += part.size() * lanes_;
+    const double* other = from - static_cast<int>(part.others.size()) * lanes_;
+    for (int column : part.others) {
+      for (int i = 0; i < width_; ++i) {
+        const double* value = basis(group) + i * lanes_;
+        double* near = near_.data() + (i * coordinates_ + column) * lanes_;
+        for (int l = 0; l < lanes_; ++l) near[l] += value[l] * other[l];
+      }
+      other += lanes_;
     }
   }
   for (int l = 0; l < knots_of(group); ++l) {

@@ -14,11 +14,12 @@ namespace banded {
 
 constexpr int kOrders = 3;  // value, first and second derivative
 
-// What one agent or the object has of a knot's variables: y = (q, q', q'', forces).
+// What one agent or the object has of a knot's variables: y = (q, q', q'', forces, values of others' coordinates).
 struct PartColumns {
   int first = 0, coordinates = 0;  // of the coordinates of the knot
-  std::vector<int> forces;         // of the forces of the knot
-  int size() const { return kOrders * coordinates + static_cast<int>(forces.size()); }
+  std::vector<int> forces;         // of the forces of the knot, -1 for one that is always zero
+  std::vector<int> others;         // of the coordinates of the knot
+  int size() const { return kOrders * coordinates + static_cast<int>(forces.size() + others.size()); }
 };
 
 class Knots {

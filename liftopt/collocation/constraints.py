@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from liftopt.collocation.flat_hand import PUSH, flat_hand_rows
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
 from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
@@ -27,8 +28,8 @@ class Block:
     """Rows of one constraint of one agent or the object.
 
     Attributes:
-        name: ``"closure"`` (6), ``"torque"`` (2), ``"keep_in"`` (4), ``"grasp_force"``, ``"balance"`` (7),
-            ``"velocity"``.
+        name: ``"closure"`` (6), ``"torque"`` (2), ``"keep_in"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
+            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``.
         who: agent or object.
         rows: where in g.
         labels: meaning of the rows at one knot; they repeat knot by knot.
@@ -117,8 +118,11 @@ def build_constraints(
         _torque(rows, i, agent)
         _keep_in(rows, i, agent)
         _grasp_force(rows, i, agent.name, task.max_grasp_force)
+        if agent.grasp.moments:
+            _moment(rows, i, agent)
+        _flat_hand(rows, i, agent)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
-    _balance(rows, len(agents), held, task.balance_tolerance)
+    _balance(rows, len(agents), held, served_rows(agents, held, task.balance_tolerance), task.balance_tolerance)
     _velocity(rows, len(agents), held.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
     n_c = len(layout.mesh.phase) * sum(outputs)
     return Constraints(
@@ -163,15 +167,37 @@ def _grasp_force(rows: _Rows, i: int, who: str, cap: float) -> None:
     rows.close("grasp_force", who, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
 
 
-def served_rows(held: LiftedObject, tolerance: float) -> list[int]:
+def _moment(rows: _Rows, i: int, agent: Agent) -> None:
+    """The norm of the moment, squared, as a share of its cap squared, and the hand's angle on the object by its cosine.
+
+    The cosine's slope vanishes with the angle, so an angle of zero cannot be asked for.
+    """
+    after, grasp = rows.layout.coordinates[i] + FORCE_SIZE + 1, agent.grasp
+    rows.add(rows.outputs_at(i, rows.knots, np.array([after])), 1.0 / grasp.max_moment**2)
+    rows.close("grasp_moment", agent.name, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
+    rows.add(rows.outputs_at(i, rows.knots, np.array([after + 1])), 1.0)
+    bounds = np.array([np.cos(grasp.max_turn)]), np.array([np.inf])
+    rows.close("grasp_turn", agent.name, ("cosine",), *bounds, len(rows.knots))
+
+
+def _flat_hand(rows: _Rows, i: int, agent: Agent) -> None:
+    """A flat hand pushes and neither slides nor tips [N, Nm]."""
+    first = rows.layout.coordinates[i] + FORCE_SIZE + 3
+    for flat in flat_hand_rows(agent.grasp):
+        m = len(flat.labels)
+        rows.add(rows.outputs_at(i, rows.knots, first + flat.components), flat.signs)
+        rows.add(rows.outputs_at(i, rows.knots, np.full(m, first + PUSH)), flat.shares)
+        rows.close(flat.name, agent.name, flat.labels, np.zeros(m), np.full(m, np.inf), len(rows.knots))
+
+
+def served_rows(agents: tuple[Agent, ...], held: LiftedObject, tolerance: float) -> list[int]:
     """Return the rows of the balance to ask for: all six with a tolerance, as in the paper, else those served."""
-    unserved = held.unserved_row()
+    unserved = None if any(agent.grasp.moments for agent in agents) else held.unserved_row()
     return [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
 
 
-def _balance(rows: _Rows, part: int, held: LiftedObject, tolerance: float) -> None:
+def _balance(rows: _Rows, part: int, held: LiftedObject, served: list[int], tolerance: float) -> None:
     """Eq. 17 [N, Nm]."""
-    served = served_rows(held, tolerance)
     rows.add(rows.outputs_at(part, rows.knots, np.array(served)), 1.0)
     bound = np.full(len(served), tolerance)
     rows.close("balance", held.name, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, len(rows.knots))

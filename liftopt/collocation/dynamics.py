@@ -110,7 +110,7 @@ def agent_functions(topology: Topology) -> KnotFunctions:
     """
     import casadi as ca
 
-    cpin, model, p = _symbolic_model(topology)
+    cpin, model, p = symbolic_model(topology)
     n = model.nv
     period = ca.SX.sym("T")
     q, dq, ddq, f = (ca.SX.sym(name, size) for name, size in (("q", n), ("dq", n), ("ddq", n), ("f", 3)))
@@ -135,7 +135,7 @@ def agent_functions(topology: Topology) -> KnotFunctions:
         ca.horzcat(jacobian_grasp, zeros, zeros, ca.SX(3, 3)),
         ca.horzcat(ca.SX(1, 3 * n), 2 * f.T),
     )
-    return _functions(ca.vertcat(q, dq, ddq, f), ca.vertcat(period, p), c, jacobian, squared=n)
+    return knot_functions(ca.vertcat(q, dq, ddq, f), ca.vertcat(period, p), c, jacobian, squared=n)
 
 
 def object_functions(topology: Topology) -> KnotFunctions:
@@ -147,13 +147,13 @@ def object_functions(topology: Topology) -> KnotFunctions:
     """
     import casadi as ca
 
-    cpin, model, p = _symbolic_model(topology)
+    cpin, model, p = symbolic_model(topology)
     m = len(topology.frames)
     period = ca.SX.sym("T")
     x, dx, ddx, forces = (ca.SX.sym(s, size) for s, size in (("x", 6), ("dx", 6), ("ddx", 6), ("f", 3 * m)))
 
-    rotation, spin = _roll_pitch_yaw(ca, x[3:])
-    q = ca.vertcat(x[:3], _quaternion(ca, x[3:]))
+    rotation, spin = roll_pitch_yaw(ca, x[3:])
+    q = ca.vertcat(x[:3], quaternion(ca, x[3:]))
     v = ca.vertcat(ca.mtimes(rotation.T, dx[:3]), ca.mtimes(spin, dx[3:])) / period
     a = ca.jtimes(v, ca.vertcat(x, dx), ca.vertcat(dx, ddx)) / period
 
@@ -170,10 +170,11 @@ def object_functions(topology: Topology) -> KnotFunctions:
         generalized -= ca.vertcat(f_body, ca.cross(lever, f_body))
     c = ca.vertcat(ca.mtimes(rotation, generalized[:3]), generalized[3:], *points)
     y = ca.vertcat(x, dx, ddx, forces)
-    return _functions(y, ca.vertcat(period, p), c, ca.jacobian(c, y), squared=0)
+    return knot_functions(y, ca.vertcat(period, p), c, ca.jacobian(c, y), squared=0)
 
 
-def _functions(y: Any, p: Any, c: Any, jacobian: Any, squared: int) -> KnotFunctions:
+def knot_functions(y: Any, p: Any, c: Any, jacobian: Any, squared: int) -> KnotFunctions:
+    """Return the functions of outputs c (y, p) with their Jacobian; the first ``squared`` outputs may be squared."""
     import casadi as ca
 
     m, d = ca.SX.sym("m", c.shape[0]), ca.SX.sym("d", squared)
@@ -191,7 +192,7 @@ def _functions(y: Any, p: Any, c: Any, jacobian: Any, squared: int) -> KnotFunct
     )
 
 
-def _symbolic_model(topology: Topology) -> tuple[Any, Any, Any]:
+def symbolic_model(topology: Topology) -> tuple[Any, Any, Any]:
     """Return (pinocchio.casadi module, its model with symbolic entries, the symbols p)."""
     import casadi as ca
 
@@ -220,7 +221,7 @@ def _symbolic_model(topology: Topology) -> tuple[Any, Any, Any]:
     return cpin, model, symbols
 
 
-def _roll_pitch_yaw(ca: Any, angles: Any) -> tuple[Any, Any]:
+def roll_pitch_yaw(ca: Any, angles: Any) -> tuple[Any, Any]:
     """Return R = Rx Ry Rz (3, 3) and the map (3, 3) from the angles' rates to the angular velocity, body axes."""
     (cr, cp, cy), (sr, sp, sy) = (
         (function(angles[0]), function(angles[1]), function(angles[2])) for function in (ca.cos, ca.sin)
@@ -233,7 +234,7 @@ def _roll_pitch_yaw(ca: Any, angles: Any) -> tuple[Any, Any]:
     return ca.mtimes(rx, after_roll), spin
 
 
-def _quaternion(ca: Any, angles: Any) -> Any:
+def quaternion(ca: Any, angles: Any) -> Any:
     """Return the quaternion (x, y, z, w) of Rx Ry Rz."""
     half = angles / 2
     (cr, cp, cy), (sr, sp, sy) = ((f(half[0]), f(half[1]), f(half[2])) for f in (ca.cos, ca.sin))

@@ -194,6 +194,16 @@ class SoftProblem(Problem):
             # The row is the squared norm as a share of the squared cap.
             share, who, unit = np.sqrt(1.0 + amounts) - 1.0, [block.who], "N"
             amounts = share * task.max_grasp_force
+        elif block.name == "grasp_moment":
+            share, who, unit = np.sqrt(1.0 + amounts) - 1.0, [block.who], "Nm"
+            amounts = share * self.team.agents[names.index(block.who)].grasp.max_moment
+        elif block.name == "grasp_turn":
+            # The row is the angle's cosine.
+            limit, who, unit = self.team.agents[names.index(block.who)].grasp.max_turn, [block.who], "deg"
+            amounts = np.degrees(np.arccos(np.clip(np.cos(limit) - amounts, -1.0, 1.0)) - limit)
+        elif block.name in ("friction", "pressure"):
+            unit = "N" if block.name == "friction" else "Nm"
+            who = [f"{block.who} {label}" for label in block.labels]
         elif block.name == "velocity":
             n = len(self.mesh.slope)
             phase = (np.arange(n) + 1.0) / (n + 1)
@@ -220,4 +230,5 @@ class SoftProblem(Problem):
         if block.name == "velocity":
             return SHARE_PRICE / block.upper
         # The squared share of a force grows twice as fast as the share.
-        return np.full(len(block.lower), SHARE_PRICE / 2 if block.name == "grasp_force" else SHARE_PRICE)
+        squared = block.name in ("grasp_force", "grasp_moment")
+        return np.full(len(block.lower), SHARE_PRICE / 2 if squared else SHARE_PRICE)

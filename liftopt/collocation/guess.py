@@ -33,6 +33,8 @@ DIFFERENT, SAME_COST = 0.3, 0.01
 # Seeds tried at once, and rounds of them after which an end that no posture was found for is given up.
 SEEDS, ROUNDS = 16, 3
 TOO_FAST_WEIGHT = 1e3
+# A blend along which a hand turns too far on the object joins arm configurations that seldom meet.
+TURNED_WEIGHT = 1e4
 NAIVE_FORCE = 10.0
 
 
@@ -109,8 +111,14 @@ def _promise(problem: Problem, pairs: list[tuple[Posture, Posture]]) -> Array:
     travel = np.array([np.abs(last.coordinates - first.coordinates)[:-OBJECT_SIZE] for first, last in pairs])
     excess = np.maximum(0.0, QUINTIC_PEAK * travel / problem.task.duration - speed).sum(axis=1)
     held = np.array([first.cost + last.cost for first, last in pairs])
-    blended = Batch(problem).objective(_blends(problem, pairs))
+    blends = _blends(problem, pairs)
+    blended = Batch(problem).objective(blends)
     promise: Array = blended + STATIC_WEIGHT * held + TOO_FAST_WEIGHT * excess
+    turns = [block for block in problem.constraints.blocks if block.name == "grasp_turn"]
+    if turns:
+        rows = np.concatenate([np.arange(block.rows.start, block.rows.stop) for block in turns])
+        missed = np.concatenate([block.lower for block in turns]) - Batch(problem, rows).rows(blends)
+        promise += TURNED_WEIGHT * np.maximum(0.0, missed).mean(axis=1)
     return promise
 
 

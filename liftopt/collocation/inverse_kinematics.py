@@ -1,4 +1,4 @@
-"""Postures that bring every grasp to the object, from many seeds at once: closure and half-spaces, without forces.
+"""Postures that bring every grasp to the object, from many seeds at once, as the hands can hold it; without forces.
 
 Levenberg's and Marquardt's method on the grasp gaps, in its dual form: the steps have the least norm, so a posture
 stays near its seed, and the systems to solve are as small as the number of gaps. Joints at a limit that a step
@@ -35,16 +35,19 @@ class Reach:
         coordinates: (B, n) joints of every agent, then the object's six coordinates.
         gaps: (B, agents) distance left between each agent's grasp and its point on the object [m].
         outside: (B, agents) how far each grasp is outside its half-space [m]; 0 where there is none.
+        twisted: (B, agents) how far the cosine of each hand's angle on the object is below that of its limit; 0 where
+            there is none.
     """
 
     coordinates: Array
     gaps: Array
     outside: Array
+    twisted: Array
 
     @property
     def shortfall(self) -> Array:
-        """(B,) the largest of what is missing [m]."""
-        return np.asarray(np.maximum(self.gaps, self.outside).max(axis=1))
+        """(B,) the largest of what is missing [m, 1]."""
+        return np.asarray(np.max([self.gaps, self.outside, self.twisted], axis=(0, 2)))
 
 
 class InverseKinematics:
@@ -55,8 +58,8 @@ class InverseKinematics:
         blocks = problem.constraints.blocks
         names = [agent.name for agent in problem.team.agents]
         closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "closure"]
-        keep_in = [b for b in blocks if b.name == "keep_in"]
-        self._kept = [names.index(b.who) for b in keep_in]
+        keep_in = [b for name in ("keep_in", "grasp_turn") for b in blocks if b.name == name]
+        self._kept = [names.index(b.who) + len(names) * (b.name == "grasp_turn") for b in keep_in]
         self._offset = np.array([float(b.lower[0]) for b in keep_in])
         self._n_closure = FORCE_SIZE * len(closure)
         rows = np.concatenate([*closure, *(np.arange(b.rows.start, b.rows.stop) for b in keep_in)])
@@ -74,7 +77,7 @@ class InverseKinematics:
             deadline: ``time.monotonic`` value past which it returns what it has.
             most: iterations.
             any_angle: leave out the joints' ranges of motion.
-            anywhere: leave out the half-spaces.
+            anywhere: leave out the half-spaces and the limits on the hands' angles.
         """
         lower, upper = self._bounds(pose, any_angle)
         x = np.zeros((len(seeds), self.problem.layout.n_x))
@@ -97,12 +100,12 @@ class InverseKinematics:
             damping[todo] = np.where(better, np.maximum(EASE * damping[todo], LEAST_DAMPING), TIGHTEN * damping[todo])
             damping[todo[better & (was - now < STALLED * was)]] = STUCK
         gaps = np.linalg.norm(left[:, : self._n_closure].reshape(len(x), -1, FORCE_SIZE), axis=2)
-        outside = np.zeros_like(gaps)
-        outside[:, self._kept] = -self._left(x, False)[:, self._n_closure :]
-        return Reach(x[:, self._columns], gaps, outside)
+        beyond = np.zeros((len(x), 2 * gaps.shape[1]))
+        beyond[:, self._kept] = -self._left(x, False)[:, self._n_closure :]
+        return Reach(x[:, self._columns], gaps, *np.split(beyond, 2, axis=1))
 
     def _left(self, x: Array, anywhere: bool) -> Array:
-        """Return the vectors between grasps and the (negative) distances to the half-spaces; 0 inside them."""
+        """Return the vectors between grasps and by how much (negative) one-sided rows are missed; 0 where they hold."""
         left = self._batch.rows(x)
         kept = left[:, self._n_closure :]
         kept[:] = 0.0 if anywhere else np.minimum(0.0, kept - self._offset)

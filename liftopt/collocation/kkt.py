@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from liftopt.collocation.kkt_wrench import add_agent_wrench, object_wrench_slopes
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers
@@ -107,14 +108,23 @@ def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Arr
     """Return outputs (K, n_c) and their Jacobians (K, n_c, n_y) at every knot."""
     team = problem.team
     if part < len(team.agents):
-        return _agent_knots(team.agents[part], y, period)
-    return _object_outputs(team.held, y, period), _object_slopes(team.held, y, period)
+        agent = team.agents[part]
+        found = _agent_knots(agent, y, period)
+        return found if agent.grasp.bare else add_agent_wrench(agent, y, *found)
+    if all(grasp.bare for grasp in team.grasps):
+        return _object_outputs(team.held, y, period), _object_slopes(team.held, y, period)
+    # Forces and moments take turns in y.
+    wrenches = y[:, 18:].reshape(len(y), -1, 2, 3)
+    forces, moments = (wrenches[:, :, i].reshape(len(y), -1) for i in (0, 1))
+    bare = np.hstack([y[:, :18], forces])
+    slopes = object_wrench_slopes(team.held, y, _object_slopes(team.held, bare, period))
+    return _object_outputs(team.held, bare, period, moments), slopes
 
 
 def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
     model = agent.reduced()
     n, data, frame = model.nv, model.createData(), model.frames[model.getFrameId(agent.grasp_frame)]
-    q, v, a, f = y[:, :n], y[:, n : 2 * n] / period, y[:, 2 * n : 3 * n] / period**2, y[:, 3 * n :]
+    q, v, a, f = y[:, :n], y[:, n : 2 * n] / period, y[:, 2 * n : 3 * n] / period**2, y[:, 3 * n : 3 * n + FORCE_SIZE]
     tau, point, slopes = np.zeros((len(y), n)), np.zeros((len(y), 3)), np.zeros((len(y), 6, n))
     jacobian, mass_matrix = np.zeros((len(y), n + FORCE_SIZE + 1, y.shape[1])), np.zeros((len(y), n, n))
     for k in range(len(y)):
@@ -131,14 +141,14 @@ def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
     # A joint turns the grasp's Jacobian columns of the joints after it: d2p / dq_i dq_j = w_i x dp/dq_j for i <= j,
     # and the order of differentiation does not matter.
     jacobian[:, :n, :n] += _mirrored(turned(cross(turning[:, :, None], slope[:, None, :]), f[:, None]))
-    jacobian[:, :n, 3 * n :] = slope
+    jacobian[:, :n, 3 * n : 3 * n + FORCE_SIZE] = slope
     jacobian[:, n : n + FORCE_SIZE, :n] = slope.swapaxes(1, 2)
-    jacobian[:, n + FORCE_SIZE, 3 * n :] = 2 * f
+    jacobian[:, n + FORCE_SIZE, 3 * n : 3 * n + FORCE_SIZE] = 2 * f
     return np.hstack([tau + turned(slope, f), point, (f**2).sum(axis=1)[:, None]]), jacobian
 
 
-def _object_outputs(held: LiftedObject, y: Array, period: float) -> Array:
-    moved = object_trajectory(held, y[:, :6], y[:, 6:12] / period, y[:, 12:18] / period**2, y[:, 18:])
+def _object_outputs(held: LiftedObject, y: Array, period: float, moments: Array | None = None) -> Array:
+    moved = object_trajectory(held, y[:, :6], y[:, 6:12] / period, y[:, 12:18] / period**2, y[:, 18:], moments)
     return np.hstack([moved.wrench, moved.grasp_position.reshape(len(y), -1)])
 
 

@@ -10,6 +10,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.spline import Mesh
+from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
+from liftopt.multibody.agent import Grasp
 
 Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
@@ -24,19 +26,21 @@ class Layout:
     Attributes:
         mesh: the mesh they live on.
         coordinates: number of coordinates of each agent; the object's six come after them.
+        grasps: what each agent's hold transmits.
         control: (n_free, sum of coordinates + 6) positions of the control points.
-        force: (K, 3 agents) positions of the grasp forces.
+        force: (K, sum of the grasps' sizes) positions of the grasp forces, each followed by its moment if it has one.
     """
 
     mesh: Mesh
     coordinates: tuple[int, ...]
+    grasps: tuple[Grasp, ...]
     control: Index
     force: Index
 
     @staticmethod
-    def on(mesh: Mesh, coordinates: Sequence[int]) -> Layout:
+    def on(mesh: Mesh, coordinates: Sequence[int], grasps: Sequence[Grasp]) -> Layout:
         """Lay the unknowns out in the order of time, so that what interacts is near."""
-        n, m = sum(coordinates) + OBJECT_SIZE, FORCE_SIZE * len(coordinates)
+        n, m = sum(coordinates) + OBJECT_SIZE, sum(grasp.size for grasp in grasps)
         order = sorted(
             [(phase, 0, i) for i, phase in enumerate(mesh.control_phase)]
             + [(phase, 1, k) for k, phase in enumerate(mesh.phase)]
@@ -47,7 +51,7 @@ class Layout:
             target = force if is_force else control
             target[i] = at + np.arange(target.shape[1])
             at += target.shape[1]
-        return Layout(mesh, tuple(coordinates), control, force)
+        return Layout(mesh, tuple(coordinates), tuple(grasps), control, force)
 
     @property
     def n_x(self) -> int:
@@ -67,20 +71,53 @@ class Layout:
 
     def force_columns(self, part: int) -> slice:
         """Return the columns of ``force`` that act on an agent, or all of them for the object."""
-        return slice(None) if part == self.n_agents else slice(FORCE_SIZE * part, FORCE_SIZE * (part + 1))
+        if part == self.n_agents:
+            return slice(None)
+        first = sum(grasp.size for grasp in self.grasps[:part])
+        return slice(first, first + self.grasps[part].size)
+
+    def wrenches(self, force: Array) -> Array:
+        """Return force and moment (K, agents, 6) of every grasp from the columns of ``force``; no moment is zero."""
+        whole = np.zeros((len(force), self.n_agents, WRENCH_SIZE))
+        for i, grasp in enumerate(self.grasps):
+            whole[:, i, : grasp.size] = force[:, self.force_columns(i)]
+        return whole
+
+    def kernel_forces(self, part: int) -> Index:
+        """Return the columns of ``force`` in the order that a part's kernel takes them, -1 for what is always zero.
+
+        The kernels for wrenches have room for every moment.
+        """
+        columns = np.arange(self.force.shape[1])
+        chosen = range(self.n_agents) if part == self.n_agents else (part,)
+        bare = all(self.grasps[i].bare for i in chosen)
+        rooms = np.full((len(chosen), FORCE_SIZE if bare else WRENCH_SIZE), -1)
+        for room, i in zip(rooms, chosen, strict=True):
+            room[: self.grasps[i].size] = columns[self.force_columns(i)]
+        return rooms.ravel()
+
+    def kernel_others(self, part: int) -> Index:
+        """Return the columns of ``control`` whose values a part's kernel takes after the forces: the attitude."""
+        follows = part < self.n_agents and not self.grasps[part].bare
+        return np.arange(self.control.shape[1])[-3:] if follows else np.zeros(0, np.int64)
 
     def select(self, part: int) -> sp.csc_matrix:
-        """Return S (K n_y, n_x): at each knot q, q', q'' and the forces of a part, as linear maps of x."""
-        control, force = self.control[:, self.columns(part)], self.force[:, self.force_columns(part)]
-        n, m = control.shape[1], force.shape[1]
-        n_y, rows, cols, values = 3 * n + m, [], [], []
+        """Return S (K n_y, n_x): at each knot q, q', q'', forces and others of a part, as linear maps of x."""
+        room, others = self.kernel_forces(part), self.control[:, self.kernel_others(part)]
+        control, force = self.control[:, self.columns(part)], self.force[:, room[room >= 0]]
+        n, m = control.shape[1], len(room)
+        n_y, rows, cols, values = 3 * n + m + others.shape[1], [], [], []
         for order, basis in enumerate(self.mesh.basis):
             knot, i = np.nonzero(basis)
             rows.append(n_y * knot[:, None] + order * n + np.arange(n))
             cols.append(control[i])
             values.append(np.repeat(basis[knot, i], n))
-        rows.append(n_y * np.arange(len(force))[:, None] + 3 * n + np.arange(m))
+        rows.append(n_y * np.arange(len(force))[:, None] + 3 * n + np.flatnonzero(room >= 0))
         cols.append(force)
         values.append(np.ones(force.size))
+        knot, i = np.nonzero(self.mesh.basis[0])
+        rows.append(n_y * knot[:, None] + 3 * n + m + np.arange(others.shape[1]))
+        cols.append(others[i])
+        values.append(np.repeat(self.mesh.basis[0][knot, i], others.shape[1]))
         row, col = (np.concatenate([part.ravel() for part in parts]) for parts in (rows, cols))
         return sp.csc_matrix((np.concatenate(values), (row, col)), shape=(len(force) * n_y, self.n_x))

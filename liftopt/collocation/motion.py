@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
@@ -38,13 +39,14 @@ def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array
     control, force = problem.unpack(x)
     period, layout = problem.task.duration, problem.layout
     q, v, a = (spline.basis(phase, order) @ control / period**order for order in range(3))
-    forces = interpolate_linear(force, phase)
+    wrenches = layout.wrenches(interpolate_linear(force, phase))
+    forces, moments = wrenches[..., :FORCE_SIZE], wrenches[..., FORCE_SIZE:]
     agents = []
     for i, agent in enumerate(problem.team.agents):
         own = layout.columns(i)
-        agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, layout.force_columns(i)]))
+        agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, i], moments[:, i]))
     own = layout.columns(layout.n_agents)
-    held = object_trajectory(problem.team.held, q[:, own], v[:, own], a[:, own], forces)
+    held = object_trajectory(problem.team.held, q[:, own], v[:, own], a[:, own], forces, moments)
     return Motion(phase * period, tuple(agents), held)
 
 
@@ -52,7 +54,8 @@ def objective_terms(motion: Motion) -> dict[str, float]:
     """Return the unweighted integrals of the objective by the trapezoid rule over the knots.
 
     Keys: each agent's name (squared torques of its moving joints, eq. 10), ``"acceleration"`` (squared accelerations
-    of those joints and of the object's six coordinates) and ``"force"`` (squared grasp forces).
+    of those joints and of the object's six coordinates) and ``"force"`` (squared grasp forces, and
+    squared moments over the squared breadth of the hand).
     """
     step = np.diff(motion.time)
     weights = np.zeros(len(motion.time))
@@ -61,7 +64,8 @@ def objective_terms(motion: Motion) -> dict[str, float]:
     terms = {agent.name: float(weights @ (agent.tau[:, agent.moving] ** 2).sum(axis=1)) for agent in motion.agents}
     acceleration = sum((agent.a[:, agent.moving] ** 2).sum(axis=1) for agent in motion.agents)
     acceleration = acceleration + (motion.held.pose_acceleration**2).sum(axis=1)
-    force = np.sum([(agent.grasp_force**2).sum(axis=1) for agent in motion.agents], axis=0)
+    contact = [np.hstack([agent.grasp_force, agent.grasp_moment / agent.grasp.breadth]) for agent in motion.agents]
+    force = np.sum([(each**2).sum(axis=1) for each in contact], axis=0)
     return terms | {"acceleration": float(weights @ acceleration), "force": float(weights @ force)}
 
 

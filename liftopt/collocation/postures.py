@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from liftopt.collocation.inverse_kinematics import CLOSED, InverseKinematics
 from liftopt.collocation.kernels import Say
-from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
@@ -40,7 +39,7 @@ class Posture:
 
     Attributes:
         coordinates: (n,) joints of every agent, then the object's six coordinates.
-        force: (3 agents,) grasp forces on the object [N].
+        force: grasp forces on the object [N], and moments [Nm], as the layout has them.
         cost: objective of holding still for the task's duration.
     """
 
@@ -52,9 +51,7 @@ class Posture:
 class PostureSolver:
     """Static postures of a team with the object at a given pose."""
 
-    def __init__(
-        self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None
-    ) -> None:
+    def __init__(self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None) -> None:
         """Build the solver.
 
         Args:
@@ -63,7 +60,7 @@ class PostureSolver:
             say: hears of it when kernels must be compiled first.
             like: another one, whose solver is taken if it fits.
         """
-        self.problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
+        self.problem: Problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
         self.kinematics = InverseKinematics(self.problem)
         self._solver: Solver
         self._at_pose: dict[bytes, Problem] = {}
@@ -96,8 +93,8 @@ class PostureSolver:
         problem = self._at_pose[key]
         model = problem.team.held.model
         weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
-        share = np.zeros(problem.layout.force.shape)
-        share[:, 2::FORCE_SIZE] = weight / len(problem.team.agents)
+        share, layout = np.zeros(problem.layout.force.shape), problem.layout
+        share[:, [layout.force_columns(i).start + 2 for i in range(layout.n_agents)]] = weight / layout.n_agents
         result = self._solver.solve(problem.pack(coordinates[None, :], share), deadline=deadline, problem=problem)
         if not result.converged:
             return None

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,12 +16,18 @@ import numpy.typing as npt
 from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
 from liftopt.collocation.constraints import Constraints, build_constraints
 from liftopt.collocation.dynamics import STRUCTURAL_ZERO, Topology, agent_functions, object_functions
-from liftopt.collocation.kernels import Kernel, load_kernels
-from liftopt.collocation.layout import OBJECT_SIZE, Layout
+from liftopt.collocation.kernels import Builder, Kernel, load_kernels
+from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask
+from liftopt.collocation.wrench_dynamics import (
+    WRENCH_SIZE,
+    WrenchTopology,
+    wrench_agent_functions,
+    wrench_object_functions,
+)
 from liftopt.errors import ModelError
-from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 
 Array = npt.NDArray[np.float64]
 
@@ -57,15 +64,11 @@ class Team:
             like: a team whose kernels are taken if they are the ones.
         """
         _check(agents, held)
-        topologies = [Topology.of(agent.reduced(), (agent.grasp_frame,)) for agent in agents]
-        topologies.append(Topology.of(held.model, held.grasp_frames))
+        requests = kernel_requests(agents, held)
+        topologies = tuple(topology for _, topology in requests)
         signatures = tuple(topology.signature() for topology in topologies)
-        if like is not None and like.signatures == signatures:
-            kernels = like.kernels
-        else:
-            builders = [agent_functions] * len(agents) + [object_functions]
-            kernels = tuple(load_kernels(list(zip(builders, topologies, strict=True)), say))
-        return Team(agents, held, tuple(topologies), kernels)
+        kernels = like.kernels if like is not None and like.signatures == signatures else load_kernels(requests, say)
+        return Team(agents, held, topologies, tuple(kernels))
 
     @cached_property
     def signatures(self) -> tuple[str, ...]:
@@ -76,6 +79,11 @@ class Team:
     def coordinates(self) -> tuple[int, ...]:
         """Number of moving joints of each agent."""
         return tuple(len(agent.posture) for agent in self.agents)
+
+    @property
+    def grasps(self) -> tuple[Grasp, ...]:
+        """What each agent's hold transmits."""
+        return tuple(agent.grasp for agent in self.agents)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +105,7 @@ class Problem:
     @cached_property
     def layout(self) -> Layout:
         """Positions of the unknowns."""
-        return Layout.on(self.mesh, self.team.coordinates)
+        return Layout.on(self.mesh, self.team.coordinates, self.team.grasps)
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
@@ -145,7 +153,9 @@ class Problem:
         y_weight[:n] = self.posture_weight
         y_weight[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
         if agent:
-            y_weight[3 * n :] = task.force_weight * task.duration
+            y_weight[3 * n : 3 * n + FORCE_SIZE] = task.force_weight * task.duration
+            moments = y_weight[3 * n + FORCE_SIZE : 3 * n + WRENCH_SIZE]
+            moments[:] = task.force_weight * task.duration / self.team.agents[part].grasp.breadth ** 2
             c_weight[:] = task.agent_weights[part] * task.duration
         return c_weight, y_weight
 
@@ -160,6 +170,8 @@ class Problem:
         for i, agent in enumerate(self.team.agents):
             lower[layout.control[:, layout.columns(i)]] = agent.limits.q_lower
             upper[layout.control[:, layout.columns(i)]] = agent.limits.q_upper
+            moment = layout.force[:, layout.force_columns(i)][:, FORCE_SIZE:]
+            lower[moment], upper[moment] = -agent.grasp.max_moment, agent.grasp.max_moment
         pose = layout.control[:, layout.columns(layout.n_agents)]
         lower[pose], upper[pose] = task.pose_lower, task.pose_upper
         for block, fixed in ((0, task.start), (-1, task.end)):
@@ -168,7 +180,7 @@ class Problem:
         return lower, upper
 
     def unpack(self, x: Array) -> tuple[Array, Array]:
-        """Return control points (n_free, coordinates + 6) and grasp forces (K, 3 agents) of a vector of unknowns."""
+        """Return control points (n_free, coordinates + 6) and grasp forces, as laid out, of a vector of unknowns."""
         return x[self.layout.control], x[self.layout.force]
 
     def pack(self, control: Array, force: Array) -> Array:
@@ -177,6 +189,22 @@ class Problem:
         x[self.layout.control], x[self.layout.force] = control, force
         lower, upper = self.bounds()
         return np.clip(x, lower, upper)
+
+
+def kernel_requests(agents: tuple[Agent, ...], held: LiftedObject) -> list[tuple[Builder, Topology]]:
+    """Return what to generate the kernels of the agents and then of the object from."""
+    requests: list[tuple[Any, Topology]] = []
+    for agent in agents:
+        model, frames, grasp = agent.reduced(), (agent.grasp_frame,), agent.grasp
+        if grasp.bare:
+            requests.append((agent_functions, Topology.of(model, frames)))
+        else:
+            requests.append((wrench_agent_functions, WrenchTopology.holding(model, frames, grasp.R_hand_object)))
+    if all(agent.grasp.bare for agent in agents):
+        requests.append((object_functions, Topology.of(held.model, held.grasp_frames)))
+    else:
+        requests.append((wrench_object_functions, WrenchTopology.holding(held.model, held.grasp_frames)))
+    return requests
 
 
 def _check(agents: tuple[Agent, ...], held: LiftedObject) -> None:

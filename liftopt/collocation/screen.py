@@ -83,7 +83,7 @@ def _screen_end(
         promising = reach.coordinates[np.argsort(reach.shortfall)[:NEAREST]]
         reach = kinematics.reach(pose, promising, deadline, most=MORE_ITERATIONS)
     nearest = int(np.argmin(reach.shortfall))
-    near = Posture(reach.coordinates[nearest], np.zeros(FORCE_SIZE * len(problem.team.agents)), np.inf)
+    near = Posture(reach.coordinates[nearest], np.zeros(problem.layout.force.shape[1]), np.inf)
     if reach.shortfall.min() < REACHED:
         reached = list(reach.coordinates[reach.shortfall < REACHED])
         return _strength(problem, postures, name, pose, reached, deadline) or (None, near)
@@ -93,8 +93,8 @@ def _screen_end(
     beyond = kinematics.reach(pose, again, deadline, most=ITERATIONS, anywhere=True)
     closed = np.flatnonzero(beyond.gaps.max(axis=1) < REACHED)
     if len(closed):
-        outside = beyond.outside[closed[np.argmin(beyond.outside[closed].max(axis=1))]]
-        return _outside(problem, name, outside), near
+        best = closed[np.argmin(np.maximum(beyond.outside, beyond.twisted)[closed].max(axis=1))]
+        return _outside(problem, name, beyond.outside[best], beyond.twisted[best]), near
     gaps = reach.gaps[nearest]
     who = problem.team.agents[int(np.argmax(gaps))].name
     text = f"out of reach at the {name} of the lift: the {who}'s grasp stays {gaps.max():.3f} m short"
@@ -102,7 +102,14 @@ def _screen_end(
     return Obstacle("closure", who, float(gaps.max()), "m", text), near
 
 
-def _outside(problem: Problem, name: str, outside: Array) -> Obstacle:
+def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> Obstacle:
+    if twisted.max() > outside.max():
+        agent = problem.team.agents[int(np.argmax(twisted))]
+        limit, lacking = agent.grasp.max_turn, float(twisted.max())
+        amount = float(np.degrees(np.arccos(np.clip(np.cos(limit) - lacking, -1.0, 1.0)) - limit))
+        text = f"held back at the {name} of the lift: the {agent.name}'s hand would have to turn "
+        text += f"{amount:.0f} deg farther on the object than the {np.degrees(limit):.0f} deg allowed"
+        return Obstacle("grasp_turn", agent.name, amount, "deg", text)
     who, amount = problem.team.agents[int(np.argmax(outside))].name, float(outside.max())
     text = f"held back at the {name} of the lift: the {who}'s grasp would lie {amount:.3f} m outside its half-space"
     return Obstacle("keep_in", who, amount, "m", text)
@@ -156,8 +163,14 @@ def _strength(
         return None, held
     # A squeeze relieves some joints: the limits that are exceeded belong together.
     exceeded = sorted((use for use in _uses(problem, held) if use[0] > 1.0), reverse=True)
+    if not exceeded:
+        return None, held
     _, constraint, who = exceeded[0]
-    words = {"torque": "the torque limit of", "grasp_force": "the grasp force cap of"}
+    words = {
+        "torque": "the torque limit of",
+        "grasp_force": "the grasp force cap of",
+        "grasp_moment": "the grasp moment cap of",
+    }
     shares = [strong, *(share for share, _, _ in exceeded[1:NAMED])]
     pairs = zip(shares, exceeded[:NAMED], strict=True)
     what = [f"{share:.2f} times {words[kind]} {whose}" for share, (_, kind, whose) in pairs]
@@ -176,7 +189,8 @@ def _stronger(problem: Problem, factor: float) -> PostureSolver:
     for agent in problem.team.agents:
         limits = agent.limits
         stronger = replace(limits, tau_lower=factor * limits.tau_lower, tau_upper=factor * limits.tau_upper)
-        agents.append(replace(agent, limits=stronger))
+        grasp = replace(agent.grasp, max_moment=factor * agent.grasp.max_moment)
+        agents.append(replace(agent, limits=stronger, grasp=grasp))
     task = replace(problem.task, max_grasp_force=factor * problem.task.max_grasp_force)
     return PostureSolver(replace(problem.team, agents=tuple(agents)), task)
 
@@ -191,10 +205,13 @@ def _uses(problem: Problem, posture: Posture) -> list[tuple[float, str, str]]:
     candidates = []
     for i, agent in enumerate(problem.team.agents):
         q = posture.coordinates[None, problem.layout.columns(i)]
-        force = posture.force[None, problem.layout.force_columns(i)]
-        still = agent_trajectory(agent, q, 0 * q, 0 * q, force)
+        wrench = problem.layout.wrenches(posture.force[None])[:, i]
+        force, moment = wrench[:, :FORCE_SIZE], wrench[:, FORCE_SIZE:]
+        still = agent_trajectory(agent, q, 0 * q, 0 * q, force, moment)
         tau = still.tau[0, still.moving]
         share = np.where(tau > 0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
         candidates += [(float(s), "torque", joint) for s, joint in zip(share, agent.moving_joints, strict=True)]
         candidates.append((float(np.linalg.norm(force)) / problem.task.max_grasp_force, "grasp_force", agent.name))
+        if agent.grasp.moments:
+            candidates.append((float(np.linalg.norm(moment)) / agent.grasp.max_moment, "grasp_moment", agent.name))
     return candidates

@@ -12,6 +12,7 @@ transcription's error in energy.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,7 @@ from liftopt.solution import Solution
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
 
 Array = npt.NDArray[np.float64]
+TURNING = "grasp moments"
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,8 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
     Work is under ``"torques"``, ``"grasp forces"`` (of the object on an agent, of the agents on the object) and, for
     the object, ``"unbalanced"``: the residual of the balance (eq. 17), which the motion needs and nobody gives. In the
     books of all, ``"unbalanced"`` also holds what the grasp forces do where the grasp points part between knots.
+    Where grasps transmit moments, their work is apart under ``"grasp moments"``: in the books of all it is what they do
+    on hands that turn on the object.
 
     Args:
         solution: what was solved.
@@ -67,14 +71,22 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
     dense = refined(solution, factor)
     models = agents_of(solution.scenario, solution.urdfs)
     books = [_agent(*pair, dense.time, factor) for pair in zip(models, dense.agents, strict=True)]
-    forces = [agent.grasp_force for agent in dense.agents]
-    books.append(_object(object_of(solution.scenario, solution.urdfs), dense.held, forces, dense.time, factor))
+    held_model = object_of(solution.scenario, solution.urdfs)
+    books.append(_object(held_model, dense.held, dense.agents, dense.time, factor))
     *agents, held = books
     total = {
         "torques": np.sum([agent.work["torques"] for agent in agents], axis=0),
         "unbalanced": np.sum([book.work["grasp forces"] for book in books], axis=0) + held.work["unbalanced"],
     }
+    if TURNING in held.work:
+        total[TURNING] = np.sum([book.work[TURNING] for book in books if TURNING in book.work], axis=0)
     return (*books, EnergyBooks("all", np.sum([book.change for book in books], axis=0), total))
+
+
+def turned_in_hands(books: tuple[EnergyBooks, ...]) -> float:
+    """Return the largest work that moments do because hands turn on the object, over the largest change of energy."""
+    total = books[-1]
+    return float(np.abs(total.work.get(TURNING, np.zeros(1))).max() / np.abs(total.change).max())
 
 
 def unexplained(books: tuple[EnergyBooks, ...]) -> float:
@@ -84,30 +96,37 @@ def unexplained(books: tuple[EnergyBooks, ...]) -> float:
 
 
 def _agent(model: Agent, agent: AgentTrajectory, time: Array, factor: int) -> EnergyBooks:
-    energy, grip = np.zeros(len(time)), np.zeros((len(time), 3))
+    energy, grip = np.zeros(len(time)), np.zeros((len(time), 6))
     data, frame = model.model.createData(), model.model.getFrameId(model.grasp_frame)
     for k in range(len(time)):
         energy[k] = pin.computeMechanicalEnergy(model.model, data, agent.q[k], agent.v[k])
         pin.forwardKinematics(model.model, data, agent.q[k], agent.v[k])
-        grip[k] = pin.getFrameVelocity(model.model, data, frame, pin.LOCAL_WORLD_ALIGNED).linear
+        grip[k] = pin.getFrameVelocity(model.model, data, frame, pin.LOCAL_WORLD_ALIGNED).vector
     work = {
         "torques": _integral((agent.tau * agent.v).sum(axis=1), time, factor),
-        "grasp forces": _integral(-(agent.grasp_force * grip).sum(axis=1), time, factor),
+        "grasp forces": _integral(-(agent.grasp_force * grip[:, :3]).sum(axis=1), time, factor),
     }
+    if agent.grasp.moments:
+        work[TURNING] = _integral(-(agent.grasp_moment * grip[:, 3:]).sum(axis=1), time, factor)
     return EnergyBooks(agent.name, (energy - energy[0])[::factor], work)
 
 
-def _object(model: LiftedObject, held: ObjectTrajectory, forces: list[Array], time: Array, factor: int) -> EnergyBooks:
+def _object(
+    model: LiftedObject, held: ObjectTrajectory, agents: Sequence[AgentTrajectory], time: Array, factor: int
+) -> EnergyBooks:
     data, energy, unbalanced = model.model.createData(), np.zeros(len(time)), np.zeros(len(time))
     for k in range(len(time)):
         q, v, _ = free_flyer_state(held.pose[k], held.pose_velocity[k], held.pose_acceleration[k])
         energy[k] = pin.computeMechanicalEnergy(model.model, data, q, v)
         unbalanced[k] = held.wrench[k, :3] @ held.velocity[k, :3] + held.wrench[k, 3:] @ v[3:]
-    power = np.zeros(len(time))
-    for i, force in enumerate(forces):
-        lever = held.grasp_position[:, i] - held.pose[:, :3]
-        power += (force * (held.velocity[:, :3] + np.cross(held.velocity[:, 3:], lever))).sum(axis=1)
+    power, turning = np.zeros(len(time)), np.zeros(len(time))
+    for i, agent in enumerate(agents):
+        lever, spin = held.grasp_position[:, i] - held.pose[:, :3], held.velocity[:, 3:]
+        power += (agent.grasp_force * (held.velocity[:, :3] + np.cross(spin, lever))).sum(axis=1)
+        turning += (agent.grasp_moment * spin).sum(axis=1)
     work = {"grasp forces": _integral(power, time, factor), "unbalanced": _integral(unbalanced, time, factor)}
+    if any(agent.grasp.moments for agent in agents):
+        work[TURNING] = _integral(turning, time, factor)
     return EnergyBooks(held.name, (energy - energy[0])[::factor], work)
 
 

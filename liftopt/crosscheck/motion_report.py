@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from liftopt.checks import Check
-from liftopt.crosscheck.energy import energy_books, unexplained
+from liftopt.crosscheck.energy import energy_books, turned_in_hands, unexplained
 from liftopt.crosscheck.mujoco_dynamics import inverse_dynamics
 from liftopt.crosscheck.mujoco_forward import BANDWIDTH, WINDOW, Deviation, Simulation
 from liftopt.crosscheck.transcriptions import mesh_study
@@ -41,8 +41,10 @@ def motion_report(solution: Solution, say: Say | None = None) -> tuple[Check, ..
     say = say or (lambda line: None)
     say("inverse dynamics in MuJoCo")
     checks = list(_inverse(solution))
-    say("forward simulation in MuJoCo")
-    checks += _forward(solution)
+    # The simulation holds the object at points.
+    if all(agent.grasp.bare for agent in solution.agents):
+        say("forward simulation in MuJoCo")
+        checks += _forward(solution)
     say("energy")
     return (*checks, *_energy(solution))
 
@@ -61,6 +63,8 @@ def result_report(solution: Solution, transcription: bool, say: Say | None = Non
     """
     if not solution.solved:
         raise InputError("RESULT", solution.status, "must be a solved and verified lift")
+    if transcription and not all(agent.grasp.bare for agent in solution.agents):
+        raise InputError("--transcription", True, "knows point grasps only")
     checks = motion_report(solution, say)
     text, passed = render(checks), all(check.passed for check in checks)
     if transcription:
@@ -102,6 +106,11 @@ def _energy(solution: Solution) -> Iterator[Check]:
     for before, now in zip(coarse, books, strict=True):
         order = f"1/{before.error / now.error:.1f} of that on half the panels" if now.error > 0.0 else ""
         yield Check(f"energy, work of torques and forces, {now.name}", now.relative, BOOKS, "relative", order)
+    if any(agent.grasp.moments for agent in solution.agents):
+        share = turned_in_hands(books)
+        yield Check(
+            "energy, moments on hands that turn", share, np.inf, "relative", "within their limits on the object"
+        )
     where = "balance and closure between the knots"
     yield Check("energy, left by the transcription", unexplained(books), UNEXPLAINED, "relative", where)
 

@@ -65,11 +65,11 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
     for k in range(len(solution.time)):
         data.qpos[:], data.qvel[:], data.qacc[:] = states.qpos[k], states.qvel[k], states.qacc[k]
         mujoco.mj_inverse(model, data)
-        external, none = np.zeros(model.nv), np.zeros(3)
+        external = np.zeros(model.nv)
         for i, agent in enumerate(solution.agents):
-            force = agent.grasp_force[k]
-            mujoco.mj_applyFT(model, data, -force, none, data.xpos[bodies[i]], bodies[i], external)
-            mujoco.mj_applyFT(model, data, force, none, data.xpos[edges[i]], top, external)
+            force, moment = agent.grasp_force[k], agent.grasp_moment[k]
+            mujoco.mj_applyFT(model, data, -force, -moment, data.xpos[bodies[i]], bodies[i], external)
+            mujoco.mj_applyFT(model, data, force, moment, data.xpos[edges[i]], top, external)
             gaps[i] = max(gaps[i], float(np.linalg.norm(data.xpos[bodies[i]] - agent.grasp_position[k])))
         found[k] = data.qfrc_inverse - external
     results = []

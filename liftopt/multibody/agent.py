@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -48,8 +48,43 @@ class HalfSpace:
 
 
 @dataclass(frozen=True)
+class Grasp:
+    """What an agent's hold on the object transmits; by default a force at a point, in any direction (the paper's).
+
+    A hold that transmits moments is one of a hand that cannot turn freely on the object: its orientation is held
+    too. Its reference is that in which the hand's grip axes are the object's axes.
+
+    Attributes:
+        moments: whether it transmits a moment too.
+        max_moment: largest norm of the moment about the grasp point [Nm].
+        max_turn: largest angle of the hand from its reference orientation on the object, about any axis [rad].
+        R_hand_object: (3, 3) the object's axes in the axes of the agent's grasp frame, at the reference orientation.
+        breadth: of what holds [m]: a moment m takes contact forces of m / breadth in it, which count in the objective
+            like the force itself; and how far the pressure under a flat hand can move.
+        friction: None for a grip; else a flat hand that only pushes along the object's z axis, with this coefficient.
+    """
+
+    moments: bool = False
+    max_moment: float = 0.0
+    max_turn: float = np.pi
+    R_hand_object: Array = field(default_factory=lambda: np.eye(3))
+    breadth: float = 0.085
+    friction: float | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of components that it transmits."""
+        return 6 if self.moments else 3
+
+    @property
+    def bare(self) -> bool:
+        """Whether it is a force at a point and no more."""
+        return not self.moments and self.friction is None
+
+
+@dataclass(frozen=True)
 class Agent:
-    """One who holds the object: a fixed-base chain with a point grasp.
+    """One who holds the object: a fixed-base chain that grasps it at a point.
 
     Attributes:
         name: prefix of its joint names (``"human"``, ``"robot"``).
@@ -60,6 +95,7 @@ class Agent:
         limits: of the joints that are not pinned.
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
         keep_in: half-space that the grasp point must stay in, or None.
+        grasp: what its hold transmits.
     """
 
     name: str
@@ -70,6 +106,7 @@ class Agent:
     limits: JointLimits
     posture: Array
     keep_in: HalfSpace | None = None
+    grasp: Grasp = Grasp()
 
     @property
     def moving_joints(self) -> tuple[str, ...]:

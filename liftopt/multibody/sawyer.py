@@ -42,6 +42,8 @@ LENGTHS = (0.317, 0.081, 0.1925, 0.4, 0.1685, 0.4, 0.1363, 0.1345)
 # Table 3's joints turn as the manufacturer's right_j0 to right_j6, the fourth the other way round.
 JOINT_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
 # Elbow up, the tool level and pointing at the human, 1.05 m ahead of the base and 0.24 m above it.
+# Orientation of the tool that comes to the edge level, in the world: its axis (the grasp frame's z) along -X, y up.
+LEVEL_TOOL = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 POSTURE = (-0.15, -0.44, 0.0, -1.12, 0.0, -0.68, 0.0)
 
 

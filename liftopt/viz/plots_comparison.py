@@ -157,4 +157,5 @@ def _panel(axes: Axes, one: Comparison) -> None:
 def _number(value: float, form: str = ".3g", unit: str = "") -> str:
     if not np.isfinite(value):
         return NOTHING
-    return f"{value if abs(value) > LEAST else 0.0:{form}}{unit}"
+    shown = f"{value if abs(value) > LEAST else 0.0:{form}}"
+    return (shown if float(shown) else f"{0.0:{form}}") + unit  # no negative zero

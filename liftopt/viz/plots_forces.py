@@ -17,8 +17,9 @@ COMPONENTS = ("x, towards the robot", "y, to the person's left", "z, up")
 def grasp_forces(lift: Lift) -> Figure:
     """Return the force of person and robot on the object by component, and each one's share of the load."""
     solution = lift.dense
-    figure, grid = panels(3, height=1.75)
-    human, robot, share = (line[0] for line in grid)
+    moments = [agent for agent in solution.agents if agent.grasp.moments]
+    figure, grid = panels(3 + bool(moments), height=1.75)
+    human, robot, share = (line[0] for line in grid[:3])
     cap = solution.scenario.limits.max_grasp_force
     for axes, agent in zip((human, robot), solution.agents, strict=True):
         _components(axes, lift, agent, cap)
@@ -35,6 +36,8 @@ def grasp_forces(lift: Lift) -> Figure:
     legend_above(share, 2)
     if low >= 0.0 and high <= 100.0:
         share.set_yticks(range(0, 101, 25))
+    if moments:
+        _moments(grid[3][0], lift, moments)
     time_axes(grid, float(solution.time[-1]))
     return figure
 
@@ -90,6 +93,14 @@ def shares(agents: tuple[AgentTrajectory, ...]) -> Array:
     part = np.full_like(vertical, np.nan)
     np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
     return part
+
+
+def _moments(axes: Axes, lift: Lift, agents: list[AgentTrajectory]) -> None:
+    for agent, line in zip(agents, LINES, strict=False):
+        magnitude = np.linalg.norm(agent.grasp_moment, axis=1)
+        draw(axes, lift.dense.time, magnitude, line, f"{agent.name} (cap {agent.grasp.max_moment:g} Nm)", lift.factor)
+    axes.set(title=f"Moment of the hands on the {lift.dense.held.name}, magnitude", ylabel="moment [Nm]")
+    legend_above(axes, 2)
 
 
 def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> None:

@@ -19,7 +19,7 @@ from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
-from liftopt.multibody.agent import LiftedObject
+from liftopt.multibody.agent import Grasp, LiftedObject
 
 Unknowns = Callable[[Problem, np.random.Generator], np.ndarray]
 Outputs = Callable[[pin.Model, tuple[str, ...], np.ndarray, float], np.ndarray]
@@ -214,7 +214,7 @@ def test_layout_places_every_unknown_once(problem: Problem) -> None:
 def test_layout_selects_knot_variables(rng: np.random.Generator) -> None:
     """NumPy: basis times control points, and the forces as they are."""
     mesh = RestToRestSpline(7).mesh()
-    layout = Layout.on(mesh, (2, 3))
+    layout = Layout.on(mesh, (2, 3), (Grasp(), Grasp()))
     x = rng.normal(size=layout.n_x)
     for part, (columns, forces) in enumerate(
         ((slice(0, 2), slice(0, 3)), (slice(2, 5), slice(3, 6)), (slice(5, 11), slice(0, 6)))

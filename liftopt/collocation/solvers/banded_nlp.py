@@ -10,10 +10,9 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.assembly import Nlp
-from liftopt.collocation.dynamics import agent_functions, object_functions
 from liftopt.collocation.kernels import Say
 from liftopt.collocation.lanes import WideKernel, load_wide
-from liftopt.collocation.problem import Problem
+from liftopt.collocation.problem import Problem, kernel_requests
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
@@ -21,9 +20,7 @@ Array = npt.NDArray[np.float64]
 
 def wide_kernels(problem: Problem, say: Say | None = None) -> list[WideKernel] | None:
     """Return the kernels of a problem's parts for several knots at once, or None where they cannot be made."""
-    team = problem.team
-    builders = [agent_functions] * len(team.agents) + [object_functions]
-    return load_wide(list(zip(builders, team.topologies, strict=True)), say)
+    return load_wide(kernel_requests(problem.team.agents, problem.team.held), say)
 
 
 def kernel_nlp(module: Any, problem: Problem, kernels: list[WideKernel]) -> Any:
@@ -50,7 +47,8 @@ def _part(problem: Problem, part: int, wide: WideKernel) -> dict[str, Any]:
         derivatives=wide.derivatives,
         first=coordinates.start,
         coordinates=coordinates.stop - coordinates.start,
-        forces=np.arange(layout.force.shape[1])[layout.force_columns(part)].astype(np.int32),
+        forces=layout.kernel_forces(part).astype(np.int32),
+        others=layout.kernel_others(part).astype(np.int32),
         n_c=kernel.n_c,
         n_p=kernel.n_p,
         n_squared=kernel.n_squared,
