@@ -13,7 +13,7 @@ from liftopt import result_writer
 from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.screen import Obstacle, screen, too_fast
-from liftopt.collocation.solvers.result import STOPPED, Multipliers, Solver, SolverResult
+from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.multistart import solve_all
 from liftopt.plan import Plan
@@ -28,6 +28,7 @@ POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.9
 FINEST = 400
 SURE = "ipopt"  # takes over where another solver finds nothing
+GIVEN_UP = {BEATEN: "given up: nothing better than the first start in sight"}
 
 
 def lift(
@@ -141,7 +142,8 @@ class Search:
             self.say(f"solving on {self.spline.intervals} intervals: {start.name}{which}")
             result = next(solved)
             results.append(result)
-            status = ("converged" if result.converged else result.status) + (before[i] if before else "")
+            status = "converged" if result.converged else GIVEN_UP.get(result.status, result.status)
+            status += before[i] if before else ""
             self.records.append(StartRecord(start.name, status, result.objective, result.iterations, result.seconds))
         return results
 
