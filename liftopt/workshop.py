@@ -64,12 +64,13 @@ class Workshop:
         tolerance = scenario.solver.tolerance
         key = (name, worker, tolerance, len(problem.mesh.phase))
         kept = self._solvers.get(key)
-        if kept is None or not (kept[0].same_structure(problem) and problem.constraints.same_rows(kept[0].constraints)):
+        if kept is None or not problem.interchangeable(kept[0]):
             made: Solver
             if name == "banded":
                 made = Banded(problem, BandedOptions(tolerance=tolerance), say)
             else:
-                made = Ipopt(problem, IpoptOptions(tolerance=tolerance))
+                options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)
+                made = Ipopt(problem, options, wide_kernels(problem, say))
             kept = self._solvers[key] = (problem, made)
         return kept[1]
 

@@ -64,6 +64,7 @@ def findings(
         *(finding for who, curves in joints for finding in _speeds(who, curves)),
         *_tilt(dense),
         *_between(dense),
+        *_mesh(dense),
         *_starts(dense),
         *_data(dense),
         *(Finding("note", "From the solver", note) for note in dense.notes),
@@ -75,6 +76,8 @@ def findings(
 def _status(dense: Solution) -> Iterator[Finding]:
     if not dense.solved:
         yield Finding("stop", "Not a solution", f"This is the best iterate of a solve that failed: {dense.status}.")
+    for remedy in dense.remedies:
+        yield Finding("stop", f"Possible with: {remedy.message}", "A lift with this change was solved and verified.")
 
 
 def _torques(dense: Solution, who: str, curves: tuple[JointCurve, ...]) -> Iterator[Finding]:
@@ -177,6 +180,22 @@ def _between(dense: Solution) -> Iterator[Finding]:
             title = f"{what} exceeded between knots by {check.value:.2g} {check.unit}"
             detail = f"{check.where}. Limits hold at the knots; more solver.intervals bring them closer."
             yield Finding("note", title, detail)
+
+
+def _mesh(dense: Solution) -> Iterator[Finding]:
+    accuracy = dense.accuracy
+    if accuracy is None:
+        return
+    if not accuracy.estimated:
+        yield Finding("note", "The objective's error is not known", f"{accuracy.remark.capitalize()}.")
+    elif accuracy.objective_error > dense.scenario.refine.objective_error:
+        yield Finding(
+            "note",
+            f"The objective is {100 * accuracy.objective_error:.1f} % above that on ever finer meshes",
+            f"On {dense.intervals} intervals, estimated from the optimum on {accuracy.intervals}: it tends to "
+            f"{accuracy.objective_limit:.4g}, for the ramps at both ends take one interval each. The option --refine "
+            "solves on finer ones.",
+        )
 
 
 def _starts(dense: Solution) -> Iterator[Finding]:

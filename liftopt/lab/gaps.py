@@ -1,0 +1,103 @@
+"""Gaps in marker trajectories: short ones by a spline, long ones from the other markers of the segment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicSpline
+
+from liftopt.lab.recording import Array, Recording
+from liftopt.lab.rigid import FEWEST, fit_poses, were_seen
+
+LONGEST_SPLINE = 0.1  # s; at 6 Hz, the cut-off used for lifting, a little over half a period
+AROUND = 10  # frames on either side of a gap that its spline goes through
+
+SPLINE, SEGMENT, OPEN = "spline", "segment", "open"
+
+
+@dataclass(frozen=True)
+class Gap:
+    """One run of frames in which a marker was not seen.
+
+    Attributes:
+        marker: its label.
+        first, last: frames, counted from 0, both within the gap.
+        filled: ``"spline"``, ``"segment"`` (from the other markers of its segment) or ``"open"`` (not filled).
+    """
+
+    marker: str
+    first: int
+    last: int
+    filled: str
+
+
+def fill_gaps(recording: Recording, segments: Mapping[str, tuple[str, ...]]) -> tuple[Recording, tuple[Gap, ...]]:
+    """Return the recording with gaps filled, and all gaps.
+
+    A gap of up to 0.1 s between seen frames is closed by a cubic spline through ten frames on either side. A longer
+    one is closed by the pose of the segment's other markers, at least three of them: the marker's place in the segment
+    goes linearly from where it was before the gap to where it is after it. What then is left stays NaN: inverse
+    kinematics goes without.
+
+    Args:
+        recording: in metres.
+        segments: labels of the markers of each segment.
+    """
+    points, gaps = recording.points.copy(), []
+    longest = int(LONGEST_SPLINE * recording.rate)
+    for channel, label in enumerate(recording.labels):
+        for first, last in runs(~were_seen(points[:, channel])):
+            inside = first > 0 and last < len(points) - 1
+            if inside and last - first + 1 <= longest:
+                points[first : last + 1, channel] = _spline(recording.points[:, channel], first, last)
+                gaps.append(Gap(label, first, last, SPLINE))
+            else:
+                gaps.append(Gap(label, first, last, OPEN))
+    with_splines = points.copy()
+    for i, gap in enumerate(gaps):
+        if gap.filled == OPEN:
+            others = _others(recording, segments, gap.marker)
+            channel = recording.labels.index(gap.marker)
+            found = _from_segment(with_splines[:, channel], with_splines[:, others], gap)
+            if found is not None:
+                points[gap.first : gap.last + 1, channel] = found
+                gaps[i] = replace(gap, filled=SEGMENT)
+    return replace(recording, points=points), tuple(gaps)
+
+
+def runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return first and last index of each run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
+    return [(int(start), int(end) - 1) for start, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _spline(values: Array, first: int, last: int) -> Array:
+    frames = np.arange(max(0, first - AROUND), min(len(values), last + 1 + AROUND))
+    seen = frames[were_seen(values[frames])]
+    return np.asarray(CubicSpline(seen, values[seen])(np.arange(first, last + 1)))
+
+
+def _others(recording: Recording, segments: Mapping[str, tuple[str, ...]], marker: str) -> list[int]:
+    mates = next((labels for labels in segments.values() if marker in labels), ())
+    return [recording.labels.index(label) for label in mates if label != marker]
+
+
+def _from_segment(marker: Array, others: Array, gap: Gap) -> Array | None:
+    """Return the marker (n, 3) in a gap from the segment's other markers (F, M, 3); None if they do not suffice."""
+    inside = slice(gap.first, gap.last + 1)
+    known = were_seen(others)
+    seen = known[inside].all(axis=0)
+    ends = [frame for frame in (gap.first - 1, gap.last + 1) if 0 <= frame < len(marker)]
+    ends = [frame for frame in ends if (known[frame] | ~seen).all() and np.isfinite(marker[frame]).all()]
+    if seen.sum() < FEWEST or not ends:
+        return None
+    # The segment's shape is that of one end: so the marker leaves it without a step.
+    poses = fit_poses(others[ends[0]][seen], others[:, seen])
+    local = poses.to_body(marker)[ends]
+    frames, place = np.arange(gap.first, gap.last + 1), np.zeros_like(marker)
+    place[inside] = np.stack([np.interp(frames, ends, local[:, axis]) for axis in range(3)], axis=1)
+    found = poses.to_world(place)[inside]
+    return found if np.isfinite(found).all() else None

@@ -1,0 +1,95 @@
+"""A measured series of the hand's force, from a file of columns over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.lab.force_file import read_forces
+from liftopt.lab.motion_table import read_motion_table
+from liftopt.lab.recording import TO_Z_UP, Array
+from liftopt.lab.sensor_table import SIGNATURE
+from liftopt.lab.text_file import read_lines
+
+COLUMNS = ("time", "fx", "fy", "fz")
+
+
+@dataclass(frozen=True)
+class HandForce:
+    """Force of the hand on the object.
+
+    Attributes:
+        source: the file.
+        time: (S,) on the recording's clock [s].
+        force: (S, 3) in the recording's axes [N].
+    """
+
+    source: str
+    time: Array
+    force: Array
+
+    def at(self, time: Array) -> tuple[Array, int]:
+        """Return the force (F, 3) at ``time`` (F,) [s], zero outside the series, and how many times are outside."""
+        outside = (time < self.time[0]) | (time > self.time[-1])
+        force = np.stack([np.interp(time, self.time, column, left=0.0, right=0.0) for column in self.force.T], axis=1)
+        return force, int(outside.sum())
+
+
+def read_hand_force(path: Path, up: str) -> HandForce:
+    """Return the series of a file with the columns time [s], fx, fy, fz [N]; other columns are left aside.
+
+    A CSV that ``liftopt forces`` wrote is taken for what it measured, a force upwards.
+
+    Args:
+        path: of a CSV, MOT or STO file.
+        up: axis of the recording that points up, a key of ``TO_Z_UP``.
+
+    Raises:
+        InputError: the file cannot be read, a column is missing, or a value is no number; the message names the line.
+    """
+    if path.suffix.lower() in (".mot", ".sto"):
+        table = read_motion_table(path)
+        force = np.stack([table.column(name) for name in COLUMNS[1:]], axis=1)
+        return _checked(HandForce(str(path), table.time, force))
+    lines = read_lines(path, "a CSV file")
+    if " ".join(lines[0].fields).startswith(SIGNATURE):
+        return _of_sensors(path, up)
+    at = next((i for i, line in enumerate(lines) if line.filled), None)
+    if at is None:
+        wanted = ", ".join(COLUMNS)
+        raise InputError(str(path), NO_VALUE, f"holds nothing but separators; the columns {wanted} are needed")
+    names = tuple(name.lower() for name in lines[at].filled)
+    missing = [name for name in COLUMNS if name not in names]
+    if missing:
+        wanted = f"has no column {', '.join(missing)}; {', '.join(COLUMNS)} are needed"
+        raise lines[at].error(",".join(names)[:80], wanted)
+    picked = [names.index(name) for name in COLUMNS]
+    rows = [line for line in lines[at + 1 :] if line.filled]
+    values = np.array([[row.number_at(i, names[i]) for i in picked] for row in rows], dtype=float).reshape(
+        -1, len(COLUMNS)
+    )
+    return _checked(HandForce(str(path), values[:, 0], values[:, 1:]))
+
+
+def _of_sensors(path: Path, up: str) -> HandForce:
+    trials = read_forces(path)
+    if len(trials) != 1:
+        raise InputError(str(path), f"{len(trials)} trials", "must be one; give the file of a single trial")
+    known = np.isfinite(trials[0].hand_force)
+    upwards = TO_Z_UP[up].T @ np.array([0.0, 0.0, 1.0])
+    return _checked(HandForce(str(path), trials[0].time[known], trials[0].hand_force[known, None] * upwards))
+
+
+def _checked(series: HandForce) -> HandForce:
+    if not len(series.time):
+        raise InputError(series.source, NO_VALUE, "holds no rows")
+    if not np.isfinite(series.force).all() or not np.isfinite(series.time).all():
+        row = int(np.flatnonzero(~(np.isfinite(series.force).all(axis=1) & np.isfinite(series.time)))[0])
+        raise InputError(series.source, NO_VALUE, f"a value is missing in row {row + 1} of the data")
+    if np.any(np.diff(series.time) <= 0.0):
+        row = int(np.flatnonzero(np.diff(series.time) <= 0.0)[0]) + 2
+        raise InputError(series.source, float(series.time[row - 1]), f"the time must increase; row {row} of the data")
+    return series

@@ -1,0 +1,268 @@
+"""The main job of motion capture in one page: a recording and a mapping in, the recorded lift as joint motion out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.lab.anatomy import Array, skeleton
+from liftopt.lab.c3d import read_c3d
+from liftopt.lab.filtering import low_pass
+from liftopt.lab.findings import findings
+from liftopt.lab.gaps import Gap, fill_gaps
+from liftopt.lab.hand_force import HandForce
+from liftopt.lab.marker_map import Labels, MarkerMap, mapped_markers
+from liftopt.lab.object_motion import ObjectMotion, load_force, object_motion
+from liftopt.lab.recorded_person import RecordedPerson, recorded_person
+from liftopt.lab.recording import TO_Z_UP, Recording, in_metres
+from liftopt.lab.scaling import scale_subject
+from liftopt.lab.tracking import track
+from liftopt.lab.trc import read_trc
+from liftopt.multibody.anthropometry import LinkLengths
+from liftopt.multibody.subject import Subject
+from liftopt.trajectory import agent_trajectory
+
+CUTOFF = 6.0  # Hz, of markers and angles together
+FEWEST_FRAMES = 12  # for the filter and the spline
+READERS = {".c3d": read_c3d, ".trc": read_trc}
+
+
+@dataclass(frozen=True)
+class Load:
+    """What the hand carries.
+
+    Attributes:
+        measured: series of the hand's force, or None.
+        mass: of the object, for an estimate where no force was measured; 0 for none [kg].
+        share: of that load on the right hand.
+    """
+
+    measured: HandForce | None = None
+    mass: float = 0.0
+    share: float = 0.5
+
+
+@dataclass(frozen=True)
+class RecordedLift:
+    """A recorded lift in the terms of a solution: K frames, 13 joints, the world with X where the person faces.
+
+    Attributes:
+        source: the recording.
+        rate, cutoff: frames a second, and the cut-off of the low-pass filter [Hz].
+        subject: the person, for a prediction.
+        stature_estimated: False if the stature was given.
+        stature_by: stature that each segment implies [m].
+        lengths: L1 to L6 of the model that was tracked, measured.
+        urdf: that model.
+        joint_names: (13,) ``human_GT1`` to ``human_Q10``.
+        time: (K,) on the recording's clock [s].
+        q, v, a, tau: (K, 13) [rad or m, per s, per s^2, Nm or N]. GT1 to GT3 follow the pelvis; their forces are
+            what the legs bear.
+        hand_position, hand_force: (K, 3) of ``human_grasp``, and its force on the object, world axes [m, N].
+        force_from: where that force comes from, in words.
+        ground_force, ground_moment: (K, 3) reaction of the ground that the model's motion asks for, at the foot origin;
+            its legs go along with the pelvis in one piece, so that it overstates what swaying and squatting take.
+        plate_force: (K, 3) what force plates measured, world axes, or None [N].
+        markers: (M,) labels of what was tracked.
+        residual: (K, M) distance of each from the model's, NaN where not seen [m].
+        elbow_flexion: (K,) between the joint centres that the markers show, without the model [rad].
+        object_position, object_quaternion: (K, 3) [m] and (K, 4) x y z w since the first frame, or None.
+        carried: time from and to which the object is away from where it lay [s], or None.
+        gaps: all gaps of the mapped markers.
+        notes: what was repaired or left out, and what the model does not show.
+    """
+
+    source: str
+    rate: float
+    cutoff: float
+    subject: Subject
+    stature_estimated: bool
+    stature_by: dict[str, float]
+    lengths: LinkLengths
+    urdf: str
+    joint_names: tuple[str, ...]
+    time: Array
+    q: Array
+    v: Array
+    a: Array
+    tau: Array
+    hand_position: Array
+    hand_force: Array
+    force_from: str
+    ground_force: Array
+    ground_moment: Array
+    plate_force: Array | None
+    markers: Labels
+    residual: Array
+    elbow_flexion: Array
+    object_position: Array | None
+    object_quaternion: Array | None
+    carried: tuple[float, float] | None
+    gaps: tuple[Gap, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def residual_rms(self) -> Array:
+        """(M,) root mean square residual of each marker [m]."""
+        return np.array([_rms(column) for column in self.residual.T])
+
+    def over_lift(self, values: Array, samples: int = 101) -> Array:
+        """Return ``values`` (K, ...) at ``samples`` times evenly spread over the lift: in normalised time.
+
+        The lift is the time in which the object is carried, the whole recording if it has none.
+        """
+        start, end = self.carried or (self.time[0], self.time[-1])
+        flat = values.reshape(len(self.time), -1)
+        at = np.linspace(start, end, samples)
+        columns = [np.interp(at, self.time, column) for column in flat.T]
+        return np.stack(columns, axis=1).reshape(samples, *values.shape[1:])
+
+
+def read_recording(path: Path) -> Recording:
+    """Return the markers of a C3D or TRC file.
+
+    Raises:
+        InputError: the ending is another, or the file cannot be read.
+    """
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(str(path), NO_VALUE, f"is no recording of markers; {' and '.join(READERS)} files are")
+    return reader(path)
+
+
+def recorded_lift(
+    recording: Recording, mapping: MarkerMap, load: Load | None = None, cutoff: float = CUTOFF
+) -> RecordedLift:
+    """Return the lift that markers recorded.
+
+    Args:
+        recording: as read.
+        mapping: of its markers.
+        load: what the hand carries; None for nothing.
+        cutoff: of the low-pass filter [Hz].
+
+    Raises:
+        InputError: recording and mapping do not go together, or the subject is incomplete.
+    """
+    mapped, unused = mapped_markers(recording, mapping)
+    metres = in_metres(mapped, mapping.units or None, mapping.up)
+    if len(metres.time) < FEWEST_FRAMES:
+        raise InputError(recording.source, f"{len(metres.time)} frames", f"must be at least {FEWEST_FRAMES}")
+    filled, gaps = fill_gaps(metres, mapping.by_segment())
+    smooth = replace(filled, points=low_pass(filled.points, filled.rate, cutoff, filters=2))
+    found = skeleton(smooth, mapping)
+    scaled = scale_subject(found, mapping)
+    person = recorded_person(smooth, found, scaled)
+    agent, limits = person.agent, person.agent.limits
+    motion = track(
+        agent.model,
+        person.markers,
+        person.targets,
+        lower=limits.q_lower,
+        upper=limits.q_upper,
+        start=np.zeros(agent.model.nq),
+    )
+    q, v, a = _motion(smooth.time, motion.q, smooth.rate, cutoff, limits.q_lower, limits.q_upper)
+    held, lost = _object(smooth, mapping, person, needed=load is not None and load.mass > 0.0)
+    force, force_from = _force(smooth.time, mapping, person, held, load or Load())
+    trajectory = agent_trajectory(agent, q, v, a, force)
+    notes = [*smooth.notes, *lost, *findings(unused, recording, found, scaled, motion, trajectory.joint_names)]
+    off = np.degrees(-q[:, trajectory.joint_names.index("human_Q7")] - found.elbow_flexion)
+    notes.append(
+        "elbow flexion of the model is off that between the joint centres of the markers "
+        f"by {_rms(off):.1f} deg (rms), at most {np.nanmax(np.abs(off)):.1f}"
+    )
+    return RecordedLift(
+        source=recording.source,
+        rate=smooth.rate,
+        cutoff=cutoff,
+        subject=scaled.subject,
+        stature_estimated=scaled.estimated,
+        stature_by=scaled.stature_by,
+        lengths=scaled.lengths,
+        urdf=agent.urdf,
+        joint_names=trajectory.joint_names,
+        time=smooth.time,
+        q=q,
+        v=v,
+        a=a,
+        tau=trajectory.tau,
+        hand_position=trajectory.grasp_position,
+        hand_force=force,
+        force_from=force_from,
+        ground_force=trajectory.ground_force,
+        ground_moment=trajectory.ground_moment,
+        plate_force=_plate_force(smooth, person),
+        markers=tuple(marker.label for marker in person.markers),
+        residual=motion.residual,
+        elbow_flexion=found.elbow_flexion,
+        object_position=held.position if held else None,
+        object_quaternion=held.quaternion if held else None,
+        carried=(float(smooth.time[held.carried[0]]), float(smooth.time[held.carried[1]])) if held else None,
+        gaps=gaps,
+        notes=tuple(notes),
+    )
+
+
+def _rms(values: Array) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
+
+
+def _motion(
+    time: Array, q: Array, rate: float, cutoff: float, lower: Array, upper: Array
+) -> tuple[Array, Array, Array]:
+    """Return filtered angles and their rates; a filter overshoots a limit that held, by what is clipped here."""
+    spline = make_interp_spline(time, low_pass(q, rate, cutoff, filters=2), k=5)
+    return np.clip(spline(time), lower, upper), spline.derivative(1)(time), spline.derivative(2)(time)
+
+
+def _object(
+    recording: Recording, mapping: MarkerMap, person: RecordedPerson, needed: bool
+) -> tuple[ObjectMotion | None, list[str]]:
+    """Return the object's motion, or why there is none."""
+    labels = mapping.by_segment().get("object", ())
+    if not labels:
+        return None, []
+    points = recording.points[:, [recording.index(label) for label in labels]]
+    try:
+        return object_motion(recording.time, person.world.place(points), recording.source), []
+    except InputError as error:
+        if needed:
+            raise
+        return None, [f"the object's motion is left out: {error}"]
+
+
+def _force(
+    time: Array, mapping: MarkerMap, person: RecordedPerson, held: ObjectMotion | None, load: Load
+) -> tuple[Array, str]:
+    if load.measured is not None:
+        force, outside = load.measured.at(time)
+        turn = person.world.rotation @ TO_Z_UP[mapping.up]
+        covers = f", which has none for {outside} of {len(time)} frames (0 N there)" if outside else ""
+        return force @ turn.T, f"measured: {load.measured.source}{covers}"
+    if not load.mass:
+        return np.zeros((len(time), 3)), "none given: the torques are those of the empty hand"
+    if held is None:
+        raise InputError(
+            "segments.object", NO_VALUE, "names no markers, so that the load cannot be told from its motion"
+        )
+    what = f"estimated: {load.share:.0%} of the force that moves {load.mass:g} kg as the object moved"
+    return load_force(held, load.mass, load.share), what
+
+
+def _plate_force(recording: Recording, person: RecordedPerson) -> Array | None:
+    """Return (F, 3) the force of all plates on the person, world axes; the mean of the samples of each frame [N]."""
+    if not recording.plates:
+        return None
+    total = np.zeros((len(recording.time), 3))
+    for plate in recording.plates:
+        each = max(round(plate.rate / recording.rate), 1)
+        frames = plate.force[: each * len(total)].reshape(-1, each, 3).mean(axis=1)
+        total[: len(frames)] += frames
+    # Systems state the force on the plate or that of the plate; the ground can only push.
+    return (total if total[:, 2].mean() >= 0.0 else -total) @ person.world.rotation.T

@@ -1,0 +1,107 @@
+"""``liftopt mocap``: a TRC file and a mapping in, recorded.nc and a summary out."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray
+
+from liftopt.cli import main
+
+
+@pytest.fixture
+def files(truth: Any, tmp_path: Path) -> tuple[Path, Path]:
+    """Return the lift of known motion as a TRC file, and its mapping without the person's mass."""
+    recording = truth.recording
+    names = "\t\t\t".join(recording.labels)
+    lines = [
+        "PathFileType\t4\t(X/Y/Z)\tlift.trc",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"100\t100\t{len(recording.time)}\t{len(recording.labels)}\tmm\t100\t1\t{len(recording.time)}",
+        f"Frame#\tTime\t{names}\t\t",
+        "\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(len(recording.labels)) for axis in "XYZ"),
+        "",
+    ]
+    for k, (time, frame) in enumerate(zip(recording.time, recording.points, strict=True)):
+        lines.append(f"{k + 1}\t{time:.4f}\t" + "\t".join(f"{value:.5f}" for value in frame.ravel()))
+    trc, mapping = tmp_path / "lift.trc", tmp_path / "map.toml"
+    trc.write_text("\n".join(lines) + "\n")
+    mapping.write_text(tomli_w.dumps(truth.mapping_dict | {"subject": {"sex": "female", "stature": 1.7}}))
+    return trc, mapping
+
+
+def test_a_recording_becomes_a_recorded_lift(
+    files: tuple[Path, Path], truth: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trc, mapping = files
+    before = trc.read_bytes()
+    out = tmp_path / "out"
+    options = ["--map", str(mapping), "--out", str(out), "--mass", "65", "--object-mass", "6", "--cutoff", "20"]
+    assert main(["mocap", str(trc), *options]) == 0
+    printed = capsys.readouterr().out
+    assert "200 frames at 100 Hz" in printed
+    assert "1.700 m (given), 65 kg, female" in printed
+    assert "estimated: 50% of the force that moves 6 kg" in printed
+    assert trc.read_bytes() == before
+    with xarray.open_dataset(out / "recorded.nc", engine="h5netcdf") as lift:
+        np.testing.assert_allclose(lift.human_q.values[:, 3:], truth.q[:, 3:], atol=3e-4)
+        assert lift.human_joint.values[0] == "human_GT1"
+        assert {lift[name].attrs["units"] for name in ("human_q", "human_tau", "marker_residual")} == {
+            "rad",
+            "N m",
+            "m",
+        }
+    assert main(["mocap", str(trc), *options, "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["frames"] == 200
+    assert summary["subject"] == {"stature": 1.7, "mass": 65.0, "sex": "female"}
+    assert max(summary["residual_rms"].values()) < 1e-4
+
+
+def test_a_measured_force(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trc, mapping = files
+    series = tmp_path / "force.csv"
+    series.write_text("time,fx,fy,fz\n0.5,0,0,20\n1.0,0,0,20\n")
+    options = ["--map", str(mapping), "--out", str(tmp_path), "--mass", "65", "--hand-force", str(series)]
+    assert main(["mocap", str(trc), *options]) == 0
+    assert "which has none for 149 of 200 frames (0 N there)" in capsys.readouterr().out
+    assert main(["mocap", str(trc), *options, "--hand-force-start", "1.75"]) == 0
+    assert "which has none for 175 of 200 frames" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ([], "subject.mass: must be given in kg"),
+        (["--mass", "-3"], "subject.mass = -3.0"),
+        (["--mass", "65", "--cutoff", "70"], "cutoff = 70.0: must be above 0 and below half the rate"),
+        (["--mass", "65", "--object-mass", "nan"], "--object-mass = nan"),
+        (["--mass", "65", "--hand-share", "2"], "--hand-share = 2.0"),
+        (["--mass", "65", "--hand-force", "none.csv"], "none.csv: no such file"),
+    ],
+)
+def test_bad_input_is_one_line_and_leaves_nothing(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], match: str
+) -> None:
+    trc, mapping = files
+    assert main(["mocap", str(trc), "--map", str(mapping), "--out", str(tmp_path / "out"), *options]) == 2
+    error = capsys.readouterr().err
+    assert match in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_files_of_another_kind_are_refused(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "lift.csv"
+    other.write_text("time\n")
+    assert main(["mocap", str(other), "--map", str(files[1]), "--out", str(tmp_path), "--mass", "65"]) == 2
+    assert ".c3d and .trc files are" in capsys.readouterr().err
+    assert main(["mocap", str(files[0]), "--map", "no_map", "--out", str(tmp_path), "--mass", "65"]) == 2
+    assert "no_map: no such file" in capsys.readouterr().err
