@@ -52,9 +52,7 @@ class Posture:
 class PostureSolver:
     """Static postures of a team with the object at a given pose."""
 
-    def __init__(
-        self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None
-    ) -> None:
+    def __init__(self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None) -> None:
         """Build the solver.
 
         Args:
@@ -63,7 +61,7 @@ class PostureSolver:
             say: hears of it when kernels must be compiled first.
             like: another one, whose solver is taken if it fits.
         """
-        self.problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
+        self.problem: Problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
         self.kinematics = InverseKinematics(self.problem)
         self._solver: Solver
         self._at_pose: dict[bytes, Problem] = {}
