@@ -14,7 +14,7 @@ from liftopt import result_writer
 from liftopt.accuracy import Accuracy
 from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
 from liftopt.collocation.screen import screen, too_fast
-from liftopt.collocation.solvers.result import STOPPED, Multipliers, Solver, SolverResult
+from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer
 from liftopt.diagnosis import find
@@ -33,6 +33,7 @@ Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.7
 WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
+GIVEN_UP = {BEATEN: "given up: nothing better than the first start in sight"}
 
 
 def lift(
@@ -170,7 +171,8 @@ class Search:
             self.say(f"solving on {self.spline.intervals} intervals: {start.name}{which}")
             result = next(solved)
             results.append(result)
-            status = ("converged" if result.converged else result.status) + (before[i] if before else "")
+            status = "converged" if result.converged else GIVEN_UP.get(result.status, result.status)
+            status += before[i] if before else ""
             self.records.append(StartRecord(start.name, status, result.objective, result.iterations, result.seconds))
         return results
 

@@ -23,14 +23,25 @@ class Slow:
 
     busy: threading.Lock = field(default_factory=threading.Lock)
     deadlines: list[float] = field(default_factory=list)
+    rivals: dict[float, float | None] = field(default_factory=dict)
+    converges: bool = True
 
-    def solve(self, x0: np.ndarray, *, deadline: float, warm: object = None, problem: object = None) -> SolverResult:
+    def solve(
+        self,
+        x0: np.ndarray,
+        *,
+        deadline: float,
+        warm: object = None,
+        problem: object = None,
+        rival: float | None = None,
+    ) -> SolverResult:
         """Wait for as long as the start says."""
         assert self.busy.acquire(blocking=False), "two threads use one solver"
         time.sleep(float(x0[0]))
         self.deadlines.append(deadline)
+        self.rivals[float(x0[0])] = rival
         self.busy.release()
-        return SolverResult(x0, Multipliers(x0, x0), float(x0[0]), 1, True, STOPPED, 0.0, 0.0)
+        return SolverResult(x0, Multipliers(x0, x0), float(x0[0]), 1, self.converges, STOPPED, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("workers", [1, 3])
@@ -42,6 +53,17 @@ def test_results_come_in_the_order_of_the_starts(workers: int) -> None:
     assert all(solver.deadlines for solver in solvers)
 
 
+@pytest.mark.parametrize("workers", [1, 2, 4])
+def test_the_first_optimum_is_the_rival_of_all_but_the_last(workers: int) -> None:
+    """However many solve at a time: what a start is compared with must not depend on who is quicker."""
+    starts = [Start(f"start {i}", np.array([wait])) for i, wait in enumerate((0.03, 0.0, 0.02, 0.01))]
+    for converges, rival in ((True, 0.03), (False, None)):
+        solvers = [Slow(converges=converges) for _ in range(workers)]
+        list(solve_all(solvers, starts, time.monotonic() + 60.0))
+        given = {x: r for solver in solvers for x, r in solver.rivals.items()}
+        assert given == {0.03: None, 0.0: rival, 0.02: rival, 0.01: None}
+
+
 def test_one_start_of_several_may_not_take_all_the_time() -> None:
     solver, now = Slow(), time.monotonic()
     list(solve_all([solver], [Start("a", np.zeros(1)), Start("b", np.zeros(1))], now + 100.0))
@@ -50,11 +72,12 @@ def test_one_start_of_several_may_not_take_all_the_time() -> None:
 
 
 def test_workers_and_a_kept_workshop_change_nothing() -> None:
-    """Bit by bit: one worker, two workers, and a second time with what was kept."""
-    one = lift(load_scenario("table5", ["solver.name=banded", "solver.starts=3", "solver.intervals=16"]))
-    both, workshop = load_scenario("table5", ["solver.name=banded", "solver.starts=3", "solver.intervals=16",
-                                              "solver.workers=2"]), Workshop()  # fmt: skip
+    """Bit by bit: one worker, two workers, and a second time with what was kept; some starts are given up."""
+    overrides = ["solver.name=banded", "solver.starts=6", "solver.intervals=16"]
+    one = lift(load_scenario("table5", overrides))
+    both, workshop = load_scenario("table5", [*overrides, "solver.workers=2"]), Workshop()
     assert one.solved
+    assert {s.status for s in one.starts} == {"converged", "given up: nothing better than the first start in sight"}
     for other in (lift(both, workshop=workshop), lift(both, workshop=workshop)):
         assert other.objective == one.objective
         assert [(s.name, s.objective) for s in other.starts] == [(s.name, s.objective) for s in one.starts]

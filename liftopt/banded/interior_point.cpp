@@ -17,6 +17,11 @@ constexpr double kLeastMu = 0.4;
 constexpr double kPredicted = 0.5;
 constexpr int kMostHalvings = 24, kMostCorrections = 2, kMostShifts = 6;
 constexpr double kFirstShift = 1e-2, kShiftGrowth = 10.0;
+// What is expected of a solve that has a rival: that the objective falls once more by what it fell in so many
+// iterations, and that this share of the unknowns is at a bound. On 61 varied lifts a window of 5 with shares of 0.18
+// to 0.36 lost no best optimum, windows of 4 and 3 one; from other starts of 60 of them 0.2 lost one, by 0.16 %.
+constexpr std::size_t kWindow = 5;
+constexpr double kAtBounds = 0.2;
 
 }  // namespace
 
@@ -37,6 +42,7 @@ Result InteriorPoint::solve(const double* lower_x, const double* upper_x, const 
   options_ = options;
   evaluations_ = predictions_ = 0;
   evaluation_seconds_ = 0.0;
+  past_.clear();
   x_ = Bounded(lower_x, upper_x, nlp_.unknowns());
   s_ = Bounded(lower_g, upper_g, nlp_.rows());
   equality_.assign(nlp_.rows(), 0);
@@ -58,6 +64,7 @@ Result InteriorPoint::solve(const double* lower_x, const double* upper_x, const 
     else if (result.error <= options.tolerance) result.status = Status::solved;
     else if (result.iterations >= options.max_iterations) result.status = Status::iterations;
     else if (seconds_now() - began > options.seconds) result.status = Status::time;
+    else if (beaten()) result.status = Status::beaten;
     else {
       while (mu_ > least_mu && barrier_error(mu_) <= kBarrierError * mu_) {
         mu_ = std::max(least_mu, std::min(kLinearDecrease * mu_, std::pow(mu_, kSuperlinear)));
@@ -129,6 +136,18 @@ bool InteriorPoint::predict() {
   x_.predict_multipliers(mu_);
   s_.predict_multipliers(mu_);
   return true;
+}
+
+// Whether nothing lower than the rival is in sight, from the second barrier problem on: before, the objective tells
+// little. Each active bound holds the minimum of a barrier problem some mu above that of the problem.
+bool InteriorPoint::beaten() {
+  if (!std::isfinite(options_.rival)) return false;
+  past_.push_back(now_.f);
+  if (past_.size() <= kWindow) return false;
+  const double fall = std::fabs(past_.front() - now_.f);
+  past_.pop_front();
+  const double lowest = now_.f - fall - kAtBounds * x_.size() * mu_;
+  return mu_ < options_.mu && lowest > options_.objective_scaling * options_.rival;
 }
 
 double InteriorPoint::evaluate(Point& point) {

@@ -7,9 +7,11 @@
 //   - a warm start may begin with whole Newton steps that no bound shortens (`predict`);
 //   - the Newton system is condensed to the unknowns and factorised by a block Cholesky, see newton.hpp;
 //   - there is no restoration phase: where no step is acceptable, delta grows a few times, then it gives up and says
-//     so, or that the violation cannot be reduced from here.
+//     so, or that the violation cannot be reduced from here;
+//   - given the objective of another solution (`rival`), it gives up where this one promises none lower.
 #pragma once
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -25,13 +27,14 @@ struct Options {
   double tolerance = 1e-6;           // largest KKT error in the problem's own units
   double objective_scaling = 0.1;    // factor on the objective inside
   double seconds = INFINITY;         // wall time before it stops
+  double rival = INFINITY;           // objective of another solution, worth going on only to get below
   double mu = 0.1, push = 1e-2;      // barrier parameter and distance from bounds at the start
   int max_iterations = 500;
   int predictions = 0;               // Newton steps at the start that no bound shortens
   int verbose = 0;
 };
 
-enum class Status { solved, iterations, time, line_search, infeasible, invalid };
+enum class Status { solved, iterations, time, line_search, infeasible, invalid, beaten };
 
 struct Result {
   Status status = Status::invalid;
@@ -72,6 +75,7 @@ class InteriorPoint {
   Merit merit(const Point& point) const;
   double evaluate(Point& point);
   bool stuck() const;
+  bool beaten();
   void finish(Result& result);
 
   Nlp& nlp_;
@@ -87,6 +91,7 @@ class InteriorPoint {
   Vector ds_, dlambda_, right_, rows_;
   double mu_ = 0.1, tau_ = 0.99, slope_ = 0.0, length_ = 0.0;
   Merit from_{0.0, 0.0};
+  std::deque<double> past_;            // objectives of the last iterations, the latest last
   int evaluations_ = 0, predictions_ = 0;
   double evaluation_seconds_ = 0.0;
 };

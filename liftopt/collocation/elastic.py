@@ -22,11 +22,13 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import wide_kernels
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.wide_nlp import wide_nlp
+from liftopt.collocation.task import OBJECT_COORDINATES
 
 Array = npt.NDArray[np.float64]
 # Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space: a broken limit can be put right by
 # someone stronger or slower, a grasp that does not hold cannot.
 CLOSURE_PRICE, SHARE_PRICE, KEEP_IN_PRICE = 1000.0, 10.0, 100.0
+LINEAR = OBJECT_COORDINATES[:3]
 # Weight of the objective beside the prices; its multipliers stay far below them.
 OBJECTIVE = 1e-4
 TOLERANCE, MAX_ITERATIONS = 1e-3, 250
@@ -210,12 +212,14 @@ class SoftProblem(Problem):
             share, amounts = amounts / block.upper.reshape(amounts.shape), amounts / task.duration
             unit = "rad/s"
             if block.who not in names:
-                who, unit = [f"{block.who} {label}" for label in block.labels], "m/s or rad/s"
+                who = [f"{block.who} {label}" for label in block.labels]
         worst = np.argmax(amounts, axis=0)
         least = NO_GAP if unit == "m" else NO_SHARE
+        linear = block.name == "velocity" and block.who not in names
+        units = ["m/s" if linear and label in LINEAR else unit for label in block.labels]
         return [
             Violation(
-                block.name, who[j], float(phase[k]) * task.duration, float(amounts[k, j]), float(share[k, j]), unit,
+                block.name, who[j], float(phase[k]) * task.duration, float(amounts[k, j]), float(share[k, j]), units[j],
                 float((prices * share if block.name == "closure" else share * SHARE_PRICE)[:, j].sum()),
             )
             for j, k in enumerate(worst)

@@ -8,7 +8,7 @@ would cross are held for that step.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -112,8 +112,7 @@ class InverseKinematics:
         return left
 
     def _bounds(self, pose: Array, any_angle: bool) -> tuple[Array, Array]:
-        task = replace(self.problem.task, start=pose, end=pose)
-        lower, upper = (bound[self._columns] for bound in replace(self.problem, task=task).bounds())
+        lower, upper = (bound[self._columns] for bound in self.problem.at_pose(pose).bounds())
         if any_angle:
             lower[:-OBJECT_SIZE], upper[:-OBJECT_SIZE] = -np.pi, np.pi
         return lower, upper

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -89,7 +89,7 @@ class PostureSolver:
             return None
         key = pose.tobytes()
         if key not in self._at_pose:
-            self._at_pose[key] = replace(self.problem, task=replace(self.problem.task, start=pose, end=pose))
+            self._at_pose[key] = self.problem.at_pose(pose)
         problem = self._at_pose[key]
         model = problem.team.held.model
         weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))

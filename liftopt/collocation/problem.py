@@ -6,7 +6,7 @@ It knows no human, robot or table: another robot, a second person or a third age
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -165,6 +165,11 @@ class Problem:
         A cubic B-spline lies in the hull of its control points, so limits on these hold at all times (eqs. 11, 15).
         The object's pose at both ends is fixed where the task fixes it (eq. 18).
         """
+        lower, upper = self._bounds
+        return lower.copy(), upper.copy()
+
+    @cached_property
+    def _bounds(self) -> tuple[Array, Array]:
         layout, task = self.layout, self.task
         lower, upper = np.full(layout.n_x, -task.max_grasp_force), np.full(layout.n_x, task.max_grasp_force)
         for i, agent in enumerate(self.team.agents):
@@ -179,6 +184,13 @@ class Problem:
             lower[pose[block, given]] = upper[pose[block, given]] = fixed[given]
         return lower, upper
 
+    def at_pose(self, pose: Array) -> Problem:
+        """Return the same problem with the object's pose (6,) at both ends, NaN where it is free: its bounds differ."""
+        other = replace(self, task=replace(self.task, start=pose, end=pose))
+        # Nothing else depends on where the object is.
+        vars(other).update(layout=self.layout, parts=self.parts, constraints=self.constraints)
+        return other
+
     def unpack(self, x: Array) -> tuple[Array, Array]:
         """Return control points (n_free, coordinates + 6) and grasp forces, as laid out, of a vector of unknowns."""
         return x[self.layout.control], x[self.layout.force]
@@ -187,8 +199,7 @@ class Problem:
         """Return the vector of unknowns, clipped to its bounds."""
         x = np.empty(self.layout.n_x)
         x[self.layout.control], x[self.layout.force] = control, force
-        lower, upper = self.bounds()
-        return np.clip(x, lower, upper)
+        return np.clip(x, *self._bounds)
 
 
 def kernel_requests(agents: tuple[Agent, ...], held: LiftedObject) -> list[tuple[Builder, Topology]]:

@@ -23,6 +23,7 @@ Array = npt.NDArray[np.float64]
 
 FACTOR = 10  # as the plots
 NO_FORCE = "none given"  # how a recorded lift says that its hand was taken as empty
+ELSEWHERE = 5.0  # deg; a robot that starts farther from where it should may have run another lift
 CLEARLY = 0.7  # of the misfit: another reading of the efforts that leaves less than this is worth a word
 
 
@@ -147,8 +148,12 @@ def _robot(dense: Solution, records: Sequence[RobotRecord], notes: list[str]) ->
     angles = np.stack([record.over_share(record.q, SHARE, duration) for record in records])
     for i, curve in enumerate(curves):
         yield _compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
-    for record in records:
+    planned = np.array([curve.q[0] for curve in curves])
+    for record, own in zip(records, np.degrees(angles), strict=True):
         notes.append(f"{record.source}: the lift begins {record.began} and lasts {duration:g} s")
+        off = float(np.abs(own[0] - planned).max())
+        if off > ELSEWHERE:
+            notes.append(f"{record.source}: the robot starts {off:.0f} deg off the prediction: is it this lift?")
         if record.tau is None:
             notes.append(f"{record.source}: not every message holds efforts: left out of the torques")
     felt = [(record, record.tau) for record in records if record.tau is not None]

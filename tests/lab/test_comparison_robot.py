@@ -133,6 +133,15 @@ def test_what_efforts_may_mean(solution: Solution, sign: float, beyond_gravity: 
     assert [said in note for note in notes] == [True] if said else notes == []
 
 
+def test_a_robot_that_ran_another_lift_is_said(solution: Solution) -> None:
+    dense = refined(solution, 10)
+    q = dense.agents[1].q[:, dense.agents[1].moving]
+    for off, said in ((0.0, False), (10.0, True)):
+        record = RobotRecord("made up", dense.time, q + np.radians(off), None, "at 0")
+        notes = experiment(solution, robot=[record]).notes
+        assert ("made up: the robot starts 10 deg off the prediction: is it this lift?" in notes) == said
+
+
 def test_a_bag_without_efforts_has_angles(solution: Solution, tmp_path: Path) -> None:
     record = read_robot_record(bag(tmp_path / "trial", states(solution), effort=False))
     found = experiment(solution, robot=[record])

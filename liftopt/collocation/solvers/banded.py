@@ -83,15 +83,22 @@ class Banded:
         return float(self._solver.multiplications())
 
     def solve(
-        self, x0: Array, *, deadline: float, warm: Multipliers | None = None, problem: Problem | None = None
+        self,
+        x0: Array,
+        *,
+        deadline: float,
+        warm: Multipliers | None = None,
+        problem: Problem | None = None,
+        rival: float | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``."""
         problem = problem or self.problem
         self._set_parameters(problem)
-        found = self._run(x0, problem, deadline, COLD if warm is None else WARM | {"warm": (warm.x, warm.g)})
+        cold: dict[str, Any] = COLD if rival is None else COLD | {"rival": rival}
+        found = self._run(x0, problem, deadline, cold if warm is None else WARM | {"warm": (warm.x, warm.g)})
         if warm is not None and found["status"] not in (SOLVED, STOPPED):
             # What was a neighbour in the data need not be one in its solution.
-            first, found = found, self._run(x0, problem, deadline, COLD)
+            first, found = found, self._run(x0, problem, deadline, cold)
             for count in ("iterations", "seconds", "evaluation_seconds"):
                 found[count] += first[count]
         self.details = found

@@ -75,9 +75,15 @@ class Ipopt:
         self._solvers: dict[bool, Any] = {}
 
     def solve(
-        self, x0: Array, *, deadline: float, warm: Multipliers | None = None, problem: Problem | None = None
+        self,
+        x0: Array,
+        *,
+        deadline: float,
+        warm: Multipliers | None = None,
+        problem: Problem | None = None,
+        rival: float | None = None,
     ) -> SolverResult:
-        """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration.
+        """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration; a rival changes nothing.
 
         Where a warm start does not converge, a cold one from ``x0`` follows, and the status says so.
         """

@@ -13,6 +13,8 @@ from liftopt.collocation.problem import Problem
 Array = npt.NDArray[np.float64]
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
+# Of a solver that was given a rival: no failure, but not worth going on.
+BEATEN = "Worse_Than_Rival"
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,13 @@ class Solver(Protocol):
     """A solver bound to one problem."""
 
     def solve(
-        self, x0: Array, *, deadline: float, warm: Multipliers | None = None, problem: Problem | None = None
+        self,
+        x0: Array,
+        *,
+        deadline: float,
+        warm: Multipliers | None = None,
+        problem: Problem | None = None,
+        rival: float | None = None,
     ) -> SolverResult:
         """Solve from ``x0``.
 
@@ -66,6 +74,7 @@ class Solver(Protocol):
             deadline: ``time.monotonic`` value past which the solver stops.
             warm: multipliers of a neighbouring solution to start from.
             problem: another problem of the same structure, for its bounds and parameters; None: the bound one.
+            rival: objective of another solution. Where nothing lower is in sight the solver may give up (``BEATEN``).
 
         Raises:
             SolverError: the solver itself cannot run.

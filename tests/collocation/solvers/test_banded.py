@@ -216,6 +216,20 @@ def test_limits_and_bad_numbers_are_reported() -> None:
     assert problem.solve()["status"] == "Invalid_Number_Detected"
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_rival_stops_what_is_worse_and_changes_nothing_else(seed: int) -> None:
+    """The solve without a rival is the oracle; only where a problem is convex is it sure not to be given up."""
+    for convex in (True, False):
+        problem = random_problem(seed, convex)
+        alone = problem.solve()
+        beaten = problem.solve(rival=alone["objective"] - 100.0)
+        assert beaten["status"] == "Worse_Than_Rival" and beaten["iterations"] < alone["iterations"]
+        if convex:
+            ahead = problem.solve(rival=alone["objective"] + 1e-6)
+            assert ahead["status"] == "Solve_Succeeded"
+            np.testing.assert_array_equal(ahead["x"], alone["x"])
+
+
 def test_misshapen_input_is_refused() -> None:
     problem = random_problem(0, convex=True)
     with pytest.raises(ValueError, match="every unknown once"):
