@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 
 from liftopt.errors import LiftoptError
 from liftopt.scenario import load_scenario, scenario_to_dict
@@ -100,7 +99,7 @@ def front_dict(front: Front) -> dict[str, Any]:
 def _row(point: Point, dominated: bool) -> dict[str, Any]:
     """Return figures of a point, units in the names."""
     human, robot = (
-        max(np.max(np.maximum(t / a.limits.tau_upper, t / a.limits.tau_lower)) for t in (a.tau[:, a.moving],))
+        max(max((t / a.limits.tau_upper).max(), (t / a.limits.tau_lower).max()) for t in (a.tau[:, a.moving],))
         for a in point.plan.at(point.plan.spline.phase * point.plan.problem.task.duration).agents
     )
     return {
