@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-
 from liftopt.errors import LiftoptError
 from liftopt.scenario import load_scenario, scenario_to_dict
 from liftopt.whole_file import write_whole

@@ -236,4 +236,4 @@ def test_ipopt_takes_over_where_it_fails(monkeypatch: pytest.MonkeyPatch) -> Non
     scenario = with_overrides(load_scenario("table5"), ["solver.name=banded", "solver.starts=2", "solver.intervals=16"])
     solution = lift(scenario, progress=lines.append)
     assert solution.verification.passed and any("IPOPT takes over" in line for line in lines)
-    assert {start.status for start in solution.starts} == {"converged (IPOPT, after banded: Line_Search_Failed)"}
+    assert {start.status for start in solution.starts[:2]} == {"converged (IPOPT, after banded: Line_Search_Failed)"}
