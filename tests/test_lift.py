@@ -127,7 +127,10 @@ INFEASIBLE = {
     ),
     "weak grasp": (["limits.max_grasp_force=5"], ["infeasible: too weak", "1.9", "times the grasp force cap of"]),
     "no time": (["solver.time_limit=0.1"], ["not converged (time limit of 0.1 s reached)"]),
-    "little time": (["solver.time_limit=0.5"], ["not converged (time limit of 0.5 s reached)"]),
+    "little time": (
+        ["solver.name=ipopt", "solver.intervals=60", "solver.time_limit=0.4"],
+        ["not converged (time limit of 0.4 s reached)"],
+    ),
 }  # fmt: skip
 
 

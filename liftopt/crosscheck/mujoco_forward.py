@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.crosscheck.mujoco_model import States, import_mujoco, spec_of, states_of
 from liftopt.interpolation import refined
+from liftopt.mujoco_model import States, import_mujoco, spec_of, states_of
 from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]

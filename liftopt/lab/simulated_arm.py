@@ -23,7 +23,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.crosscheck.mujoco_model import import_mujoco, spec_of
+from liftopt.mujoco_model import import_mujoco, spec_of
 from liftopt.multibody.sawyer import GRASP, MOVING, NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name
 from liftopt.scene import URDF_FILES

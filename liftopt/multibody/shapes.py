@@ -10,6 +10,8 @@ import numpy as np
 
 from liftopt.multibody.dh import Array
 
+SHORTEST = 1e-9  # [m]: what is shorter has no direction
+
 
 @dataclass(frozen=True)
 class Colour:
@@ -55,7 +57,7 @@ class Capsule:
         """Return the cylinder and its two end spheres."""
         axis = self.end - self.start
         length = float(np.linalg.norm(axis))
-        middle = _turned_to(axis / length, (self.start + self.end) / 2.0)
+        middle = _turned_to(axis, (self.start + self.end) / 2.0)
         return [
             (self.name, middle, _cylinder(self.radius, length)),
             (f"{self.name}_start", _at(self.start), _sphere(self.radius)),
@@ -99,7 +101,7 @@ class Cylinder:
         """Return the cylinder."""
         axis = self.end - self.start
         length = float(np.linalg.norm(axis))
-        middle = _turned_to(axis / length, (self.start + self.end) / 2.0)
+        middle = _turned_to(axis, (self.start + self.end) / 2.0)
         return [(self.name, middle, _cylinder(self.radius, length))]
 
 
@@ -137,9 +139,10 @@ def _moved(transform: Array, point: Array) -> Array:
     return moved
 
 
-def _turned_to(direction: Array, position: Array) -> Array:
-    """Return a placement at ``position`` whose z axis is the unit ``direction``, by the smallest turn."""
-    x, y, z = direction
+def _turned_to(axis: Array, position: Array) -> Array:
+    """Return a placement at ``position`` whose z axis is along ``axis`` (3,), by the smallest turn."""
+    length = float(np.linalg.norm(axis))
+    x, y, z = axis / length if length > SHORTEST else (0.0, 0.0, 1.0)
     placement = _at(position)
     if z > -1.0 + 1e-9:
         k = 1.0 / (1.0 + z)

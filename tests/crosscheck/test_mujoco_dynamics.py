@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from liftopt.crosscheck.mujoco_dynamics import inverse_dynamics
-from liftopt.crosscheck.mujoco_model import merged_urdf, spec_of, states_of
 from liftopt.errors import InputError
 from liftopt.interpolation import refined
+from liftopt.mujoco_model import merged_urdf, spec_of, states_of
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 

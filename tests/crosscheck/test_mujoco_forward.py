@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from liftopt.crosscheck.motion_report import FEEDBACK
 from liftopt.crosscheck.mujoco_forward import Simulation, Windows
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
@@ -51,7 +52,7 @@ def test_the_whole_lift_is_followed_with_little_feedback(simulation):
     whole = simulation.follow()
     assert whole.deviation.joint < 4e-3
     assert whole.deviation.position < 5e-4
-    assert whole.share.max() < 0.06
+    assert whole.share.max() < FEEDBACK
     assert whole.moment < 0.01
     assert len(whole.joints) == len(whole.torque) == 17
 
