@@ -1,4 +1,4 @@
-"""The command line: ``liftopt solve``, ``report``, ``plot`` and ``crosscheck``.
+"""The command line ``liftopt``; commands with options of their own stand in ``*_command`` modules.
 
 Exit status: 0 solved and verified (or all cross-checks passed), 2 bad input, 3 no verified solution, 130 interrupted.
 Results go to stdout, progress and errors to stderr. Modules that load the solver are imported when they are needed, so
@@ -30,9 +30,11 @@ from liftopt.lab.mocap_command import add_mocap_parser, mocap
 from liftopt.lab.record_command import add_record_parser, record
 from liftopt.lab.scenario_command import add_scenario_parser, scenario_text
 from liftopt.pareto_command import add_pareto_parser, pareto
+from liftopt.result_folder import in_the_way
 from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
 from liftopt.scenario_schema import describe
 from liftopt.sensitivity_command import add_sensitivity_parser, sensitivity
+from liftopt.viz import FORMATS
 
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
 
@@ -160,21 +162,21 @@ def _parser() -> argparse.ArgumentParser:
     plot.add_argument(
         "--format",
         action="append",
-        choices=("svg", "png", "pdf"),
+        choices=FORMATS,
         dest="formats",
         help="may be repeated (default: all three)",
     )
     plot.set_defaults(run=_plot)
     add_sensitivity_parser(commands, _telling(sensitivity))
     add_pareto_parser(commands, _telling(pareto))
-    add_mocap_parser(commands, _mocap)
-    add_calibrate_parser(commands, _calibrate)
+    add_mocap_parser(commands, _printing(mocap))
+    add_calibrate_parser(commands, _printing(calibrate_text))
     add_record_parser(commands, _record)
-    add_forces_parser(commands, _forces)
-    add_export_parser(commands, _export)
+    add_forces_parser(commands, _printing(forces_text))
+    add_export_parser(commands, _printing(export_text))
     add_dry_run_parser(commands, _telling(dry_run_text))
-    add_compare_parser(commands, _compare)
-    add_scenario_parser(commands, _recorded_scenario)
+    add_compare_parser(commands, _printing(compare_text))
+    add_scenario_parser(commands, _printing(scenario_text))
     return parser
 
 
@@ -211,11 +213,21 @@ def _plot(args: argparse.Namespace) -> int:
     from liftopt.result_reader import load_result
 
     solution = load_result(args.result)
-    from liftopt.viz.plots import FORMATS, write_plots
+    from liftopt.viz.plots import write_plots
 
     files = write_plots(solution, Path(args.out), args.formats or FORMATS)
     _write(f"Written to {args.out}: {len(files)} files\n")
     return SOLVED
+
+
+def _printing(job: Callable[[argparse.Namespace], str]) -> Callable[[argparse.Namespace], int]:
+    """Return the command that prints what a job returns."""
+
+    def run(args: argparse.Namespace) -> int:
+        _write(job(args))
+        return SOLVED
+
+    return run
 
 
 def _telling(job: Callable[[argparse.Namespace, Any], str]) -> Callable[[argparse.Namespace], int]:
@@ -230,38 +242,8 @@ def _telling(job: Callable[[argparse.Namespace, Any], str]) -> Callable[[argpars
     return run
 
 
-def _mocap(args: argparse.Namespace) -> int:
-    _write(mocap(args))
-    return SOLVED
-
-
-def _calibrate(args: argparse.Namespace) -> int:
-    _write(calibrate_text(args))
-    return SOLVED
-
-
 def _record(args: argparse.Namespace) -> int:
     record(args, say=lambda line: _write(line + "\n"))
-    return SOLVED
-
-
-def _forces(args: argparse.Namespace) -> int:
-    _write(forces_text(args))
-    return SOLVED
-
-
-def _export(args: argparse.Namespace) -> int:
-    _write(export_text(args))
-    return SOLVED
-
-
-def _compare(args: argparse.Namespace) -> int:
-    _write(compare_text(args))
-    return SOLVED
-
-
-def _recorded_scenario(args: argparse.Namespace) -> int:
-    _write(scenario_text(args))
     return SOLVED
 
 
@@ -304,13 +286,11 @@ def _make_writable(out: Path, made: list[Path]) -> None:
                 made.append(folder)
         with tempfile.TemporaryFile(dir=out):
             pass
-        blocked = [out / name for name in ("solution.nc", "scenario.toml") if (out / name).is_dir()]
-        models = out / "models"
-        blocked += [models] if models.is_symlink() or (models.exists() and not models.is_dir()) else []
+        blocked = in_the_way(out)
     except OSError as error:
         raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from None
-    if blocked:
-        raise InputError("--out", str(out), f"cannot be written: {blocked[0]} is in the way")
+    if blocked is not None:
+        raise InputError("--out", str(out), f"cannot be written: {blocked} is in the way")
 
 
 @contextmanager

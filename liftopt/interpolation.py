@@ -24,7 +24,7 @@ def refined(solution: Solution, factor: int) -> Solution:
     agents, forces, moments = [], [], []
     for model, agent in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q, v, a = motion_between(solution.time, agent.q, agent.v, agent.a, time)
-        force, moment = (_linear(solution.time, each, time) for each in (agent.grasp_force, agent.grasp_moment))
+        force, moment = (linear(solution.time, each, time) for each in (agent.grasp_force, agent.grasp_moment))
         moving = agent.moving
         agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force, moment))
         forces.append(force)
@@ -53,11 +53,12 @@ def motion_between(knots: Array, q: Array, v: Array, a: Array, time: Array) -> t
     )
 
 
+def linear(knots: Array, values: Array, time: Array) -> Array:
+    """Return values (T, n) at ``time`` (T,), linear between theirs (K, n) at ``knots`` (K,), constant outside."""
+    return np.stack([np.interp(time, knots, column) for column in values.T], axis=1)
+
+
 def _finer(knots: Array, factor: int) -> Array:
     steps = np.linspace(0.0, 1.0, factor, endpoint=False)
     inner = (knots[:-1, None] + steps * np.diff(knots)[:, None]).ravel()
     return np.append(inner, knots[-1])
-
-
-def _linear(knots: Array, values: Array, time: Array) -> Array:
-    return np.stack([np.interp(time, knots, column) for column in values.T], axis=1)

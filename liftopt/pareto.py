@@ -20,6 +20,7 @@ from liftopt.errors import InputError
 from liftopt.plan import Plan
 from liftopt.replan import Replanner
 from liftopt.scenario import Objective, Scenario
+from liftopt.summary import shares
 
 Say = Callable[[str], None]
 DECADES = 4.0  # that the ratio of the weights runs over
@@ -173,8 +174,7 @@ def _point(plan: Plan) -> Point:
     motion = plan.at(plan.spline.phase * plan.problem.task.duration)
     terms, objective = objective_terms(motion), plan.scenario.objective
     human, robot = motion.agents
-    up = human.grasp_force[:, 2]
-    share = float(np.mean(up / (up + robot.grasp_force[:, 2])))
+    share = float(np.nanmean(shares(motion.agents)[0]))
     efforts = (terms[human.name], terms[robot.name])
     return Point((objective.human_weight, objective.robot_weight), efforts, share, plan)
 

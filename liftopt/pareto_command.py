@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import LiftoptError
 from liftopt.scenario import load_scenario, scenario_to_dict
+from liftopt.viz import FORMATS
 from liftopt.whole_file import write_whole
 
 if TYPE_CHECKING:
     from liftopt.pareto import Front, Point
-
-FORMATS = ("svg", "png", "pdf")
 
 
 def add_pareto_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
@@ -54,14 +53,15 @@ def pareto(args: argparse.Namespace, say: Callable[[str], None] | None = None) -
     front = pareto_front(scenario, args.points, say)
     if not front.points:
         raise LiftoptError(f"no verified solution for any ratio of weights; try liftopt solve {args.scenario or ''}")
-    write_front(front, out)
+    values = front_dict(front)
+    write_front(front, values, out)
     if args.json:
-        return json.dumps(front_dict(front), allow_nan=False) + "\n"
-    return _table(front) + f"Written to {out}: pareto.csv, pareto.json, pareto.svg, pareto.png, pareto.pdf\n"
+        return json.dumps(values, allow_nan=False) + "\n"
+    return _table(values) + f"Written to {out}: pareto.csv, pareto.json, pareto.svg, pareto.png, pareto.pdf\n"
 
 
-def write_front(front: Front, out: Path) -> None:
-    """Write a front into a folder as a table, as JSON and as a figure.
+def write_front(front: Front, values: dict[str, Any], out: Path) -> None:
+    """Write a front, and its ``values`` from ``front_dict``, into a folder as a table, as JSON and as a figure.
 
     Raises:
         InputError: a file cannot be written.
@@ -73,12 +73,12 @@ def write_front(front: Front, out: Path) -> None:
     from liftopt.viz.plots_style import STYLE
 
     text = io.StringIO()
-    rows = front_dict(front)["points"]
+    rows = values["points"]
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     write_whole("--out", out / "pareto.csv", text.getvalue().encode())
-    write_whole("--out", out / "pareto.json", (json.dumps(front_dict(front), allow_nan=False) + "\n").encode())
+    write_whole("--out", out / "pareto.json", (json.dumps(values, allow_nan=False) + "\n").encode())
     with rc_context(STYLE):
         figure = pareto_figure(front)
     for kind in FORMATS:
@@ -97,9 +97,11 @@ def front_dict(front: Front) -> dict[str, Any]:
 
 def _row(point: Point, dominated: bool) -> dict[str, Any]:
     """Return figures of a point, units in the names."""
+    from liftopt.summary import limit_share
+
     human, robot = (
-        max(max((t / a.limits.tau_upper).max(), (t / a.limits.tau_lower).max()) for t in (a.tau[:, a.moving],))
-        for a in point.plan.at(point.plan.spline.phase * point.plan.problem.task.duration).agents
+        float(limit_share(agent).max())
+        for agent in point.plan.at(point.plan.spline.phase * point.plan.problem.task.duration).agents
     )
     return {
         "human_weight": point.weights[0],
@@ -107,15 +109,15 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
         "human_effort_N2m2s": point.efforts[0],
         "robot_effort_N2m2s": point.efforts[1],
         "human_load_share": point.share,
-        "human_largest_share_of_limit": float(human),
-        "robot_largest_share_of_limit": float(robot),
+        "human_largest_share_of_limit": human,
+        "robot_largest_share_of_limit": robot,
         "objective": float(point.plan.result.objective),
         "verified": 1,
         "dominated": int(dominated),
     }
 
 
-def _table(front: Front) -> str:
+def _table(values: dict[str, Any]) -> str:
     lines = [
         "Effort is the integral of squared joint torques; load is the person's mean part of the object's weight, most",
         "used the largest part of a joint's torque limit.",
@@ -123,7 +125,7 @@ def _table(front: Front) -> str:
         f"{'weights person : robot':>22} {'person':>10} {'robot':>10} {'load':>6} {'most used':>15}",
         f"{'':>22} {'[N2 m2 s]':>10} {'[N2 m2 s]':>10} {'[%]':>6} {'person':>7} {'robot':>7}",
     ]
-    for row in front_dict(front)["points"]:
+    for row in values["points"]:
         weights = f"{row['human_weight']:.3g} : {row['robot_weight']:.3g}"
         used = [f"{100 * row[f'{who}_largest_share_of_limit']:.0f}%" for who in ("human", "robot")]
         lines.append(
@@ -131,6 +133,6 @@ def _table(front: Front) -> str:
             f"{100 * row['human_load_share']:6.1f} {used[0]:>7} {used[1]:>7}"
             + ("  beaten in both" if row["dominated"] else "")
         )
-    for human, robot in front.missing:
+    for human, robot in values["missing_weights"]:
         lines.append(f"{human:.3g} : {robot:.3g} has no verified solution".rjust(22))
     return "\n".join(lines) + "\n"

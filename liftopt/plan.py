@@ -14,8 +14,8 @@ from liftopt.collocation.motion import Motion, motion_at, objective_terms, objec
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
+from liftopt.result_folder import URDF_FILES
 from liftopt.scenario import Scenario
-from liftopt.scene import URDF_FILES
 from liftopt.solution import SOLVED, Solution, StartRecord
 from liftopt.verify import verify
 

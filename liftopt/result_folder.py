@@ -19,9 +19,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.scene import URDF_FILES
 
 NETCDF, SCENARIO, MODELS = "solution.nc", "scenario.toml", "models"
+URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 # In the order in which they are put in place.
 FILES = (*(f"{MODELS}/{name}" for name in URDF_FILES.values()), SCENARIO, NETCDF)
 OLDER, WORK_PREFIX = ".older-result", ".writing-result-"
@@ -32,6 +32,14 @@ def standing_result(folder: Path) -> Path:
     """Return where the files of the result in ``folder`` stand: there, or in what a writer that died had kept."""
     older = folder / OLDER
     return older if older.is_dir() and not older.is_symlink() else folder
+
+
+def in_the_way(folder: Path) -> Path | None:
+    """Return what stands in ``folder`` where a file of a result cannot replace it; None if nothing does."""
+    models = folder / MODELS
+    blocked = [folder / name for name in (NETCDF, SCENARIO) if (folder / name).is_dir()]
+    blocked += [models] if models.is_symlink() or (models.exists() and not models.is_dir()) else []
+    return blocked[0] if blocked else None
 
 
 def replace_result(folder: Path, files: Mapping[str, bytes]) -> None:

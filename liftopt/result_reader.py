@@ -14,10 +14,10 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.model_file import read_model
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.netcdf_file import read_netcdf
-from liftopt.result_folder import MODELS, NETCDF, SCENARIO, locked, standing_result
+from liftopt.result_folder import MODELS, NETCDF, SCENARIO, URDF_FILES, locked, standing_result
 from liftopt.result_record import read_record
 from liftopt.scenario import Scenario, load_scenario
-from liftopt.scene import URDF_FILES, agents_of, object_of
+from liftopt.scene import agents_of, object_of
 from liftopt.solution import Solution
 from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 

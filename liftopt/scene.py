@@ -14,11 +14,11 @@ from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.multibody.human import HAND_UNDER_EDGE, Subject, human_agent
 from liftopt.multibody.sawyer import LEVEL_TOOL, sawyer_agent
 from liftopt.multibody.table import lifted_table
+from liftopt.result_folder import URDF_FILES
 from liftopt.scenario import GraspPose, Human, Robot, Scenario, Table
 
 Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
-URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 ROOM = 5.0  # [m]: half the width of the room the object may move in
 
 
@@ -34,10 +34,15 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 
 def human_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the person; ``urdfs`` as in ``agents_of``."""
-    human, urdf = scenario.human, (urdfs or {}).get(URDF_FILES["human"])
-    agent = human_agent(Subject(human.stature, human.mass, "male" if human.sex == "male" else "female"), urdf)
+    human = scenario.human
+    agent = human_agent(subject_of(human), (urdfs or {}).get(URDF_FILES["human"]))
     friction = human.friction if human.contact == "flat" else None
     return replace(agent, grasp=replace(_grasp(human, HAND_UNDER_EDGE), friction=friction))
+
+
+def subject_of(human: Human) -> Subject:
+    """Return the body that a scenario's person has."""
+    return Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
 
 
 def robot_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:

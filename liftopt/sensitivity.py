@@ -20,6 +20,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.errors import InputError
 from liftopt.plan import Plan
 from liftopt.scenario import Scenario, scenario_to_dict, with_overrides
+from liftopt.summary import shares
 from liftopt.workshop import Workshop
 
 Array = npt.NDArray[np.float64]
@@ -177,10 +178,9 @@ def figures(
     motion = motion_at(problem, spline, x, spline.phase)
     terms, weights = objective_terms(motion), objective_weights(problem)
     found = {"objective": sum(weights[name] * value for name, value in terms.items())}
-    vertical = np.stack([agent.grasp_force[:, 2] for agent in motion.agents])
-    for agent, share in zip(motion.agents, vertical / vertical.sum(axis=0), strict=True):
+    for agent, share in zip(motion.agents, shares(motion.agents), strict=True):
         found[f"effort {agent.name}"] = terms[agent.name]
-        found[f"share {agent.name}"] = float(np.mean(share))
+        found[f"share {agent.name}"] = float(np.nanmean(share))
         for j, name in enumerate(agent.joint_names):
             if name in peaks:
                 knot, sign = peaks[name]

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
+from liftopt.result_folder import SCENARIO, locked, standing_result
 from liftopt.scenario import Scenario, load_scenario, scenario_to_dict, with_overrides
+from liftopt.viz import FORMATS
 from liftopt.whole_file import write_whole
 
 if TYPE_CHECKING:
@@ -18,7 +20,6 @@ if TYPE_CHECKING:
     from liftopt.sensitivity import Sensitivity, Study
     from liftopt.workshop import Workshop
 
-FORMATS = ("svg", "png", "pdf")
 SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
 
 
@@ -55,10 +56,7 @@ def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = No
     plot = None if args.plot is None else Path(args.plot)
     if plot is not None and plot.suffix[1:] not in FORMATS:
         raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
-    source = args.scenario
-    if source is not None and Path(source).is_dir():
-        source = str(Path(source) / "scenario.toml")
-    scenario = load_scenario(source, args.overrides)
+    scenario = _scenario(args.scenario, args.overrides)
     from liftopt.sensitivity import study
 
     plan, workshop = _sharp_plan(scenario, say)
@@ -91,6 +89,14 @@ def study_dict(study: Study) -> dict[str, Any]:
         ],
         "left_out": [{"name": parameter.name, "why": why} for parameter, why in study.left_out],
     }
+
+
+def _scenario(source: str | None, overrides: list[str]) -> Scenario:
+    """Return the scenario of that name or file, or of the result in that folder."""
+    if source is None or not Path(source).is_dir():
+        return load_scenario(source, overrides)
+    with locked(Path(source), to_write=False):
+        return load_scenario(standing_result(Path(source)) / SCENARIO, overrides)
 
 
 def _sharp_plan(scenario: Scenario, say: Callable[[str], None] | None) -> tuple[Plan, Workshop]:
@@ -170,9 +176,6 @@ def _reach(s: Sensitivity) -> str:
 def _busiest(study: Study, i: int) -> str:
     """Return the joint of an agent whose peak is nearest to its limit."""
     agent = study.plan.problem.team.agents[i]
-    limits = agent.limits
-    largest = [max(-low, high) for low, high in zip(limits.tau_lower, limits.tau_upper, strict=True)]
-    shares = {
-        name: study.figures[f"peak {name}"] / limit for name, limit in zip(agent.moving_joints, largest, strict=True)
-    }
+    limits = zip(agent.moving_joints, agent.limits.effort, strict=True)
+    shares = {name: study.figures[f"peak {name}"] / limit for name, limit in limits}
     return max(shares, key=lambda name: shares[name])

@@ -7,6 +7,7 @@ load share of a body in free fall, the objective of a start that failed) is None
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -99,17 +100,39 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
 
 def load_share(solution: Solution) -> dict[str, Any]:
     """Return who carries how much of the vertical grasp force: at every knot, and its range, for each agent."""
-    vertical = np.stack([agent.grasp_force[:, 2] for agent in solution.agents])
-    load = vertical.sum(axis=0)
-    shares = np.full_like(vertical, np.nan)
-    np.divide(vertical, load, out=shares, where=np.abs(load) > FREE_FALL)
     return {
         "time_s": _numbers(solution.time),
         "agents": {
             agent.name: {"share": _numbers(share), **_range(share)}
-            for agent, share in zip(solution.agents, shares, strict=True)
+            for agent, share in zip(solution.agents, shares(solution.agents), strict=True)
         },
     }
+
+
+def shares(agents: Sequence[AgentTrajectory]) -> Array:
+    """Return each agent's part (agents, K) of the vertical grasp force; NaN where there is no load to share."""
+    vertical = np.stack([agent.grasp_force[:, 2] for agent in agents])
+    load = vertical.sum(axis=0)
+    part = np.full_like(vertical, np.nan)
+    np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
+    return part
+
+
+def limit_share(agent: AgentTrajectory) -> Array:
+    """Return the torques (K, moving joints) of an agent as fractions of the limits in their directions."""
+    tau = agent.tau[:, agent.moving]
+    return np.where(tau >= 0.0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
+
+
+def squeeze(agents: Sequence[AgentTrajectory]) -> Array:
+    """Return the part (K,) of the forces of two agents along the line of their hands that cancels [N].
+
+    Positive presses the object together.
+    """
+    first, second = agents
+    line = second.grasp_position - first.grasp_position
+    line = line / np.linalg.norm(line, axis=1, keepdims=True)
+    return np.asarray(0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line))
 
 
 def joint_meaning(agent: str, robot_model: str, joint: str) -> str:
@@ -122,7 +145,7 @@ def joint_meaning(agent: str, robot_model: str, joint: str) -> str:
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
-    share = np.where(tau >= 0.0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
+    share = limit_share(agent)
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
@@ -149,12 +172,7 @@ def _grasp_force(solution: Solution) -> dict[str, Any]:
     for agent in solution.agents:
         result["agents"][agent.name] = _peak(np.linalg.norm(agent.grasp_force, axis=1), solution.time, "N")
     if len(solution.agents) == 2:
-        first, second = solution.agents
-        line = second.grasp_position - first.grasp_position
-        line = line / np.linalg.norm(line, axis=1, keepdims=True)
-        # The part of the forces along that line which cancels: positive presses the object together.
-        squeeze = 0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line)
-        result["squeeze"] = _peak(squeeze, solution.time, "N")
+        result["squeeze"] = _peak(squeeze(solution.agents), solution.time, "N")
     return result
 
 

@@ -67,7 +67,7 @@ def answer(overrides: list[str], workshop: Workshop) -> dict[str, Any]:
         entry |= {"starts": [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]}
         entry |= {"notes": solution.notes, "kept": solution.kept_start, "intervals": solution.intervals}
         for name in ("reasons", "remedies"):
-            entry[name] = [item.message for item in getattr(solution, name, ())]
+            entry[name] = [item.message for item in getattr(solution, name)]
     except InputError as error:
         entry |= {"outcome": "refused", "status": str(error)}
     except LiftoptError as error:

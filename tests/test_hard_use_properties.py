@@ -23,11 +23,12 @@ from liftopt.model_file import read_model
 from liftopt.multibody.agent import Agent, JointLimits
 from liftopt.multibody.dh import BodyInertia, DHChain, DHRow
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
+from liftopt.result_folder import URDF_FILES
 from liftopt.result_reader import load_result
 from liftopt.result_writer import save
 from liftopt.scenario import Scenario, load_scenario, scenario_from_dict, scenario_to_dict
 from liftopt.scenario_schema import Choice, Name, Number, Section, Whole, entries
-from liftopt.scene import URDF_FILES, agents_of, object_of
+from liftopt.scene import agents_of, object_of
 from liftopt.solution import Solution
 from liftopt.trajectory import agent_trajectory, object_trajectory
 

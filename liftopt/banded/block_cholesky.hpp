@@ -20,7 +20,6 @@ class BlockCholesky {
   BlockCholesky(std::vector<std::vector<int>> blocks, const std::vector<std::pair<int, int>>& coupled);
 
   int size() const { return static_cast<int>(position_.size()); }
-  int block_of(int unknown) const { return position_[unknown].first; }
 
   // Where the entry (row, column) is stored: once, in the lower triangle by the order of elimination.
   int at(int row, int column) const;

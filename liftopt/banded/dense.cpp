@@ -5,17 +5,11 @@
 #include <cmath>
 #include <cstring>
 
-#define LIFTOPT_INLINE inline __attribute__((always_inline))
+#include "vectors.hpp"
 
 namespace banded {
 namespace {
 
-// Vectors as wide as the target's registers: wider ones would be split through memory.
-typedef double Two __attribute__((vector_size(16), aligned(16)));
-#if defined(__x86_64__)
-typedef double Four __attribute__((vector_size(32), aligned(32)));
-typedef double Eight __attribute__((vector_size(64), aligned(64)));
-#endif
 template <class Lane>
 constexpr int kWidth = sizeof(Lane) / sizeof(double);
 
@@ -95,21 +89,6 @@ LIFTOPT_INLINE bool factorise(double* a, int ld, int n, double* inverse, double 
 }
 
 template <class Lane>
-LIFTOPT_INLINE void gather(double* sums, const double* values, const int* indices, int count, const double* x) {
-  constexpr int kSize = kWidth<Lane>, kParts = kLanes / kSize;
-  Lane sum[kParts] = {};
-  for (int e = 0; e < count; ++e, indices += kLanes, values += kLanes)
-#pragma GCC unroll 4
-    for (int part = 0; part < kParts; ++part) {
-      Lane at;
-#pragma GCC unroll 8
-      for (int l = 0; l < kSize; ++l) at[l] = x[indices[part * kSize + l]];
-      sum[part] += at * reinterpret_cast<const Lane*>(values)[part];
-    }
-  for (int part = 0; part < kParts; ++part) reinterpret_cast<Lane*>(sums)[part] = sum[part];
-}
-
-template <class Lane>
 LIFTOPT_INLINE void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,
                                     double sign) {
   Lane* to = reinterpret_cast<Lane*>(y);
@@ -148,9 +127,6 @@ LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int
   TARGET bool factorise(double* a, int ld, int n, double* inverse, double threshold) {                                 \
     return banded::factorise<LANE>(a, ld, n, inverse, threshold);                                                      \
   }                                                                                                                    \
-  TARGET void gather(double* sums, const double* values, const int* indices, int count, const double* x) {             \
-    banded::gather<LANE>(sums, values, indices, count, x);                                                             \
-  }                                                                                                                    \
   TARGET void multiply_vector(double* y, const double* a, int lda, int rows, int columns, const double* x,             \
                               double sign) {                                                                           \
     banded::multiply_vector<LANE>(y, a, lda, rows, columns, x, sign);                                                  \
@@ -159,14 +135,14 @@ LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int
                                   double sign) {                                                                       \
     banded::multiply_transposed<LANE>(y, a, lda, rows, columns, x, sign);                                              \
   }                                                                                                                    \
-  const DenseOperations all = {#NAME,  multiply_add,    multiply_add_lower, factorise,                                 \
-                               gather, multiply_vector, multiply_transposed};                                          \
+  const DenseOperations all = {#NAME,     multiply_add,    multiply_add_lower,                                         \
+                               factorise, multiply_vector, multiply_transposed};                                       \
   }
 
 LIFTOPT_VARIANT(portable, , Two, 4, 2)
 #if defined(__x86_64__)
-LIFTOPT_VARIANT(avx2, __attribute__((target("avx2,fma"))), Four, 3, 4)
-LIFTOPT_VARIANT(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), Eight, 3, 8)
+LIFTOPT_VARIANT(avx2, LIFTOPT_AVX2, Four, 3, 4)
+LIFTOPT_VARIANT(avx512, LIFTOPT_AVX512, Eight, 3, 8)
 #endif
 
 const DenseOperations*& chosen() {
@@ -179,9 +155,8 @@ const DenseOperations*& chosen() {
 std::vector<const DenseOperations*> runnable_operations() {
   std::vector<const DenseOperations*> variants;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    variants.push_back(&avx512::all);
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) variants.push_back(&avx2::all);
+  if (has_avx512()) variants.push_back(&avx512::all);
+  if (has_avx2()) variants.push_back(&avx2::all);
 #endif
   variants.push_back(&portable::all);
   return variants;

@@ -27,9 +27,6 @@ struct DenseOperations {
   // definite by more than rounding: a pivot must exceed `threshold`.
   bool (*factorise)(double* a, int ld, int n, double* inverse, double threshold);
 
-  // sums (kLanes) = sum over `count` entries of values (kLanes) times x at indices (kLanes).
-  void (*gather)(double* sums, const double* values, const int* indices, int count, const double* x);
-
   // y (rows) += sign A x, x (columns).
   void (*multiply_vector)(double* y, const double* a, int lda, int rows, int columns, const double* x, double sign);
 

@@ -85,12 +85,7 @@ void InteriorPoint::start(const double* x0, const double* warm_x, const double* 
   const double scale = options_.objective_scaling;
   mu_ = options_.mu;
   std::copy_n(x0, x_.size(), x_.value.begin());
-  x_.push_inside(options_.push);
-  now_.x = x_.value;
-  evaluate(now_);
-  s_.value = now_.g;
-  s_.push_inside(options_.push);
-  now_.s = s_.value;
+  settle();
   if (warm_x != nullptr && warm_g != nullptr) {
     Vector scaled(x_.size());
     for (int i = 0; i < x_.size(); ++i) scaled[i] = scale * warm_x[i];
@@ -104,6 +99,16 @@ void InteriorPoint::start(const double* x0, const double* warm_x, const double* 
   }
   while (predictions_ < options_.predictions && predict()) ++predictions_;
   filter_ = Filter(merit(now_).theta);
+}
+
+// Evaluate at the unknowns, pushed inside their bounds, and let the slacks follow the rows, inside theirs.
+void InteriorPoint::settle() {
+  x_.push_inside(options_.push);
+  now_.x = x_.value;
+  evaluate(now_);
+  s_.value = now_.g;
+  s_.push_inside(options_.push);
+  now_.s = s_.value;
 }
 
 // Take the whole Newton step and move what left the bounds back inside: near a solution, bounds that become active
@@ -120,12 +125,7 @@ bool InteriorPoint::predict() {
   const Point point = now_;
   const Bounded x = x_, s = s_;
   for (int i = 0; i < x_.size(); ++i) x_.value[i] += newton_.dx[i];
-  x_.push_inside(options_.push);
-  now_.x = x_.value;
-  evaluate(now_);
-  s_.value = now_.g;
-  s_.push_inside(options_.push);
-  now_.s = s_.value;
+  settle();
   if (!(merit(now_).theta <= kPredicted * theta)) {
     now_ = point;
     x_ = x;

@@ -12,7 +12,6 @@
 #pragma once
 
 #include <deque>
-#include <string>
 #include <vector>
 
 #include "aligned.hpp"
@@ -60,6 +59,7 @@ class InteriorPoint {
     double f = 0.0;
   };
   void start(const double* x0, const double* warm_x, const double* warm_g);
+  void settle();
   void differentiate();
   bool predict();
   void find_weights();

@@ -197,8 +197,8 @@ void KernelNlp::differentiate(int group, double scale, double* by_y) {
         by_y[(first_y_[p] + j) * width + l] = diagonal[j * width + l] * y[(first_y_[p] + j) * width + l];
       }
   }
-  lane_operations(width).multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()),
-                                  slopes, square_pull, by_y);
+  knots_.operations().multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()), slopes,
+                               square_pull, by_y);
 }
 
 void KernelNlp::multiply_jacobian(const double* x, double* y) {
@@ -206,8 +206,7 @@ void KernelNlp::multiply_jacobian(const double* x, double* y) {
   for (int group = 0; group < knots_.groups(); ++group) {
     knots_.select(group, columns_, x, at_knot);
     std::fill_n(c, n_c_ * lanes(), 0.0);
-    lane_operations(lanes()).multiply(by_jacobian_.data(), static_cast<int>(by_jacobian_.size()), slopes(group),
-                                      at_knot, c);
+    knots_.operations().multiply(by_jacobian_.data(), static_cast<int>(by_jacobian_.size()), slopes(group), at_knot, c);
     add_outputs(group, c, y);
   }
   linear_.multiply(x, y);
@@ -218,8 +217,8 @@ void KernelNlp::multiply_jacobian_transposed(const double* x, double* y) {
   for (int group = 0; group < knots_.groups(); ++group) {
     pull_back(group, x, pull);
     std::fill_n(at_knot, n_y_ * lanes(), 0.0);
-    lane_operations(lanes()).multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()),
-                                      slopes(group), pull, at_knot);
+    knots_.operations().multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()),
+                                 slopes(group), pull, at_knot);
     knots_.add_selected(group, columns_, at_knot, y);
   }
   linear_.multiply_transposed(x, y);
@@ -230,8 +229,8 @@ void KernelNlp::multiply_hessian(const double* x, double* y) {
   for (int group = 0; group < knots_.groups(); ++group) {
     knots_.select(group, columns_, x, at_knot);
     std::fill_n(sum, n_y_ * lanes(), 0.0);
-    lane_operations(lanes()).multiply(by_hessian_.data(), static_cast<int>(by_hessian_.size()), curvatures(group),
-                                      at_knot, sum);
+    knots_.operations().multiply(by_hessian_.data(), static_cast<int>(by_hessian_.size()), curvatures(group), at_knot,
+                                 sum);
     knots_.add_selected(group, columns_, sum, y);
   }
 }

@@ -188,7 +188,7 @@ std::vector<std::pair<int, int>> KnotAssembly::coupled(const KernelNlp& nlp,
 }
 
 void KnotAssembly::add(const double* d, double* matrix) {
-  const LaneOperations& operations = lane_operations(lanes_);
+  const LaneOperations& operations = knots_.operations();
   for (int group = 0; group < knots_.groups(); ++group) {
     for (std::size_t t = 0; t < supports_.size(); ++t) {
       const int* row = nlp_.knot_rows()[t].row.data() + group * lanes_;

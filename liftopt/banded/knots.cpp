@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "lane_operations.hpp"
-
 namespace banded {
 
 Knots::Knots(int lanes, const Vector& weights, const Vector& basis, std::vector<int> control, std::vector<int> force)
-    : lanes_(lanes), knots_(static_cast<int>(weights.size())), groups_((knots_ + lanes - 1) / lanes),
-      control_(std::move(control)), force_(std::move(force)) {
+    : operations_(lane_operations(lanes)), lanes_(lanes), knots_(static_cast<int>(weights.size())),
+      groups_((knots_ + lanes - 1) / lanes), control_(std::move(control)), force_(std::move(force)) {
   points_ = knots_ ? static_cast<int>(basis.size()) / (knots_ * kOrders) : 0;
   if (points_ == 0 || basis.size() != static_cast<std::size_t>(knots_) * kOrders * points_ ||
       control_.size() % points_ != 0 || force_.size() % knots_ != 0)
@@ -47,8 +45,8 @@ void Knots::select(int group, const std::vector<PartColumns>& parts, const doubl
     for (int j = 0; j < width_ * coordinates_; ++j) near_[j * lanes_ + l] = x[from[j]];
   }
   for (const PartColumns& part : parts) {
-    lane_operations(lanes_).interpolate(basis(group), width_, near_.data() + part.first * lanes_, coordinates_,
-                                        part.coordinates, y);
+    operations_.interpolate(basis(group), width_, near_.data() + part.first * lanes_, coordinates_, part.coordinates,
+                            y);
     y += kOrders * part.coordinates * lanes_;
     for (int column : part.forces) {
       for (int l = 0; l < knots_of(group); ++l) y[l] = column < 0 ? 0.0 : x[force(group * lanes_ + l, column)];
@@ -68,8 +66,8 @@ void Knots::select(int group, const std::vector<PartColumns>& parts, const doubl
 void Knots::add_selected(int group, const std::vector<PartColumns>& parts, const double* y, double* x) {
   const double* from = y;
   for (const PartColumns& part : parts) {
-    lane_operations(lanes_).interpolate_transposed(basis(group), width_, y, coordinates_, part.coordinates,
-                                                   near_.data() + part.first * lanes_);
+    operations_.interpolate_transposed(basis(group), width_, y, coordinates_, part.coordinates,
+                                       near_.data() + part.first * lanes_);
     y += kOrders * part.coordinates * lanes_;
     for (int column : part.forces) {
       for (int l = 0; column >= 0 && l < knots_of(group); ++l) x[force(group * lanes_ + l, column)] += y[l];

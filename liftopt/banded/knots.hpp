@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "aligned.hpp"
+#include "lane_operations.hpp"
 
 namespace banded {
-
-constexpr int kOrders = 3;  // value, first and second derivative
 
 // What one agent or the object has of a knot's variables: y = (q, q', q'', forces, values of others' coordinates).
 struct PartColumns {
@@ -26,15 +25,16 @@ class Knots {
  public:
   // `basis`: (knots, orders, control points), zero away from a few neighbouring control points of each knot.
   // `control`: (control points, coordinates) and `force`: (knots, forces), places in x.
+  // Throws std::invalid_argument where the processor has no vectors of that many lanes, or the shapes do not fit.
   Knots(int lanes, const Vector& weights, const Vector& basis, std::vector<int> control, std::vector<int> force);
 
   int lanes() const { return lanes_; }
+  const LaneOperations& operations() const { return operations_; }
   int knots() const { return knots_; }
   int groups() const { return groups_; }
   int width() const { return width_; }
   int coordinates() const { return coordinates_; }
   int forces() const { return forces_; }
-  int points() const { return points_; }
   int knots_of(int group) const { return std::min(lanes_, knots_ - group * lanes_); }
   int first(int knot) const { return first_[knot]; }
   int control(int point, int coordinate) const { return control_[point * coordinates_ + coordinate]; }
@@ -49,6 +49,7 @@ class Knots {
   void add_selected(int group, const std::vector<PartColumns>& parts, const double* y, double* x);
 
  private:
+  const LaneOperations& operations_;
   int lanes_, knots_, groups_, coordinates_, forces_, points_, width_ = 1;
   std::vector<int> first_, control_, force_;
   Aligned weights_, basis_, near_;  // near: the control points of a group's knots

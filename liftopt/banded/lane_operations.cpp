@@ -3,17 +3,10 @@
 
 #include <stdexcept>
 
-#define LIFTOPT_INLINE inline __attribute__((always_inline))
+#include "vectors.hpp"
 
 namespace banded {
 namespace {
-
-typedef double Two __attribute__((vector_size(16), aligned(16)));
-#if defined(__x86_64__)
-typedef double Four __attribute__((vector_size(32), aligned(32)));
-typedef double Eight __attribute__((vector_size(64), aligned(64)));
-#endif
-constexpr int kOrders = 3;
 
 template <class Lane>
 LIFTOPT_INLINE const Lane* lanes(const double* p) {
@@ -155,24 +148,21 @@ LIFTOPT_INLINE void condense(const Pair& pair, const double* basis, int width, c
                        const double* rows, double* entries) {                                                          \
     banded::condense<LANE>(pair, basis, width, curvatures, rows, entries);                                             \
   }                                                                                                                    \
-  const LaneOperations all = {sizeof(LANE) / sizeof(double), multiply, interpolate, interpolate_transposed,            \
-                              fill_rows, condense};                                                                    \
+  const LaneOperations all = {multiply, interpolate, interpolate_transposed, fill_rows, condense};                     \
   }
 
 LIFTOPT_LANES(two, , Two)
 #if defined(__x86_64__)
-LIFTOPT_LANES(four, __attribute__((target("avx2,fma"))), Four)
-LIFTOPT_LANES(eight, __attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), Eight)
+LIFTOPT_LANES(four, LIFTOPT_AVX2, Four)
+LIFTOPT_LANES(eight, LIFTOPT_AVX512, Eight)
 #endif
 
 }  // namespace
 
 const LaneOperations& lane_operations(int lanes) {
 #if defined(__x86_64__)
-  if (lanes == 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    return eight::all;
-  if (lanes == 4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return four::all;
+  if (lanes == 8 && has_avx512()) return eight::all;
+  if (lanes == 4 && has_avx2()) return four::all;
 #endif
   if (lanes == 2) return two::all;
   throw std::invalid_argument("this processor has no vectors of that many lanes");

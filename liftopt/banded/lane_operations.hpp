@@ -5,8 +5,8 @@
 
 namespace banded {
 
-// Control points that may act at one knot.
-constexpr int kMostNear = 4;
+constexpr int kOrders = 3;    // value, first and second derivative
+constexpr int kMostNear = 4;  // control points that may act at one knot
 
 // to[to] += values[value] from[from], all vectors.
 struct Product {
@@ -36,7 +36,6 @@ struct Pair {
 };
 
 struct LaneOperations {
-  int lanes;
   void (*multiply)(const Product* products, int count, const double* values, const double* from, double* to);
   // y (orders, n) = basis (orders, width) points (width, stride); and transposed.
   void (*interpolate)(const double* basis, int width, const double* points, int stride, int n, double* y);

@@ -101,6 +101,96 @@ def clean_rotation(rotation: Array) -> Array:
     return np.where(np.abs(rotation - nearest) < STRUCTURAL_ZERO, nearest, rotation)
 
 
+@dataclass(frozen=True)
+class HeldArm:
+    """An agent at one knot on symbols, by Pinocchio.
+
+    Attributes:
+        motion: (3 n,) q, q', q''.
+        p: T and then the model's parameters.
+        tau_free: (n,) torques that the motion takes without a load, and ``tau_by_motion`` (n, 3 n) their slopes.
+        jacobian_grasp: (6, n) of the grasp frame, world axes.
+        placement: of the grasp frame in the world.
+    """
+
+    motion: Any
+    p: Any
+    tau_free: Any
+    tau_by_motion: Any
+    jacobian_grasp: Any
+    placement: Any
+
+    @staticmethod
+    def of(topology: Topology) -> HeldArm:
+        """Return the agent of a topology."""
+        import casadi as ca
+
+        cpin, model, p = symbolic_model(topology)
+        n = model.nv
+        period = ca.SX.sym("T")
+        q, dq, ddq = (ca.SX.sym(name, n) for name in ("q", "dq", "ddq"))
+        v, a = dq / period, ddq / period**2
+        frame = model.getFrameId(topology.frames[0])
+
+        dtau_dq, dtau_dv, mass_matrix = cpin.computeRNEADerivatives(model, model.createData(), q, v, a)
+        jacobian = cpin.computeFrameJacobian(model, model.createData(), q, frame, cpin.LOCAL_WORLD_ALIGNED)
+        data = model.createData()
+        cpin.forwardKinematics(model, data, q)
+        cpin.updateFramePlacements(model, data)
+        return HeldArm(
+            motion=ca.vertcat(q, dq, ddq),
+            p=ca.vertcat(period, p),
+            tau_free=cpin.rnea(model, model.createData(), q, v, a),
+            tau_by_motion=ca.horzcat(dtau_dq, dtau_dv / period, mass_matrix / period**2),
+            jacobian_grasp=jacobian,
+            placement=data.oMf[frame],
+        )
+
+    def loaded(self, load: Any) -> tuple[Any, Any]:
+        """Return torques (n,) under joint loads (n,) that depend on q, and their slopes (n, 3 n) by the motion."""
+        import casadi as ca
+
+        n = load.shape[0]
+        by_motion = ca.horzcat(ca.jacobian(load, self.motion[:n]), ca.SX(n, 2 * n))
+        return self.tau_free + load, self.tau_by_motion + by_motion
+
+
+@dataclass(frozen=True)
+class FreeFlyer:
+    """The object at one knot on symbols, by Pinocchio.
+
+    Attributes:
+        motion: (18,) x, x', x''; x is the centre of mass, then roll, pitch, yaw.
+        p: T and then the model's parameters.
+        model: with symbolic entries.
+        q: (7,) configuration.
+        rotation: (3, 3) from body to world.
+        generalized: (6,) force and moment that the motion takes, body axes.
+    """
+
+    motion: Any
+    p: Any
+    model: Any
+    q: Any
+    rotation: Any
+    generalized: Any
+
+    @staticmethod
+    def of(topology: Topology) -> FreeFlyer:
+        """Return the object of a topology."""
+        import casadi as ca
+
+        cpin, model, p = symbolic_model(topology)
+        period = ca.SX.sym("T")
+        x, dx, ddx = (ca.SX.sym(name, 6) for name in ("x", "dx", "ddx"))
+        rotation, spin = roll_pitch_yaw(ca, x[3:])
+        q = ca.vertcat(x[:3], quaternion(ca, x[3:]))
+        v = ca.vertcat(ca.mtimes(rotation.T, dx[:3]), ca.mtimes(spin, dx[3:])) / period
+        a = ca.jtimes(v, ca.vertcat(x, dx), ca.vertcat(dx, ddx)) / period
+        generalized = cpin.rnea(model, model.createData(), q, v, a)
+        return FreeFlyer(ca.vertcat(x, dx, ddx), ca.vertcat(period, p), model, q, rotation, generalized)
+
+
 def agent_functions(topology: Topology) -> KnotFunctions:
     """Return the functions of an agent: y = (q, q', q'', f), c = (tau, p_world_grasp, f . f).
 
@@ -110,32 +200,17 @@ def agent_functions(topology: Topology) -> KnotFunctions:
     """
     import casadi as ca
 
-    cpin, model, p = symbolic_model(topology)
-    n = model.nv
-    period = ca.SX.sym("T")
-    q, dq, ddq, f = (ca.SX.sym(name, size) for name, size in (("q", n), ("dq", n), ("ddq", n), ("f", 3)))
-    v, a = dq / period, ddq / period**2
-    frame = model.getFrameId(topology.frames[0])
-
-    data = model.createData()
-    dtau_dq, dtau_dv, mass_matrix = cpin.computeRNEADerivatives(model, data, q, v, a)
-    tau_free = cpin.rnea(model, model.createData(), q, v, a)
-    data = model.createData()
-    jacobian_grasp = cpin.computeFrameJacobian(model, data, q, frame, cpin.LOCAL_WORLD_ALIGNED)[:3, :]
-    data = model.createData()
-    cpin.forwardKinematics(model, data, q)
-    cpin.updateFramePlacements(model, data)
-    p_world_grasp = data.oMf[frame].translation
-
-    load = ca.mtimes(jacobian_grasp.T, f)
-    c = ca.vertcat(tau_free + load, p_world_grasp, ca.dot(f, f))
-    zeros = ca.SX(3, n)
+    arm = HeldArm.of(topology)
+    n, f = arm.tau_free.shape[0], ca.SX.sym("f", 3)
+    jacobian_grasp = arm.jacobian_grasp[:3, :]
+    tau, by_motion = arm.loaded(ca.mtimes(jacobian_grasp.T, f))
+    c = ca.vertcat(tau, arm.placement.translation, ca.dot(f, f))
     jacobian = ca.vertcat(
-        ca.horzcat(dtau_dq + ca.jacobian(load, q), dtau_dv / period, mass_matrix / period**2, jacobian_grasp.T),
-        ca.horzcat(jacobian_grasp, zeros, zeros, ca.SX(3, 3)),
+        ca.horzcat(by_motion, jacobian_grasp.T),
+        ca.horzcat(jacobian_grasp, ca.SX(3, 2 * n + 3)),
         ca.horzcat(ca.SX(1, 3 * n), 2 * f.T),
     )
-    return knot_functions(ca.vertcat(q, dq, ddq, f), ca.vertcat(period, p), c, jacobian, squared=n)
+    return knot_functions(ca.vertcat(arm.motion, f), arm.p, c, jacobian, squared=n)
 
 
 def object_functions(topology: Topology) -> KnotFunctions:
@@ -147,30 +222,23 @@ def object_functions(topology: Topology) -> KnotFunctions:
     """
     import casadi as ca
 
-    cpin, model, p = symbolic_model(topology)
-    m = len(topology.frames)
-    period = ca.SX.sym("T")
-    x, dx, ddx, forces = (ca.SX.sym(s, size) for s, size in (("x", 6), ("dx", 6), ("ddx", 6), ("f", 3 * m)))
+    import liftopt.pinocchio_casadi as cpin
 
-    rotation, spin = roll_pitch_yaw(ca, x[3:])
-    q = ca.vertcat(x[:3], quaternion(ca, x[3:]))
-    v = ca.vertcat(ca.mtimes(rotation.T, dx[:3]), ca.mtimes(spin, dx[3:])) / period
-    a = ca.jtimes(v, ca.vertcat(x, dx), ca.vertcat(dx, ddx)) / period
-
-    generalized = cpin.rnea(model, model.createData(), q, v, a)
-    points = []
-    for i, name in enumerate(topology.frames):
-        frame = model.getFrameId(name)
-        data = model.createData()
-        cpin.forwardKinematics(model, data, q)
-        cpin.updateFramePlacements(model, data)
+    body = FreeFlyer.of(topology)
+    forces = ca.SX.sym("f", 3 * len(topology.frames))
+    generalized, points = body.generalized, []
+    for name, force in zip(topology.frames, ca.vertsplit(forces, 3), strict=True):
+        frame = body.model.getFrameId(name)
+        data = body.model.createData()
+        cpin.forwardKinematics(body.model, data, body.q)
+        cpin.updateFramePlacements(body.model, data)
         points.append(data.oMf[frame].translation)
-        lever = model.frames[frame].placement.translation
-        f_body = ca.mtimes(rotation.T, forces[3 * i : 3 * i + 3])
+        lever = body.model.frames[frame].placement.translation
+        f_body = ca.mtimes(body.rotation.T, force)
         generalized -= ca.vertcat(f_body, ca.cross(lever, f_body))
-    c = ca.vertcat(ca.mtimes(rotation, generalized[:3]), generalized[3:], *points)
-    y = ca.vertcat(x, dx, ddx, forces)
-    return knot_functions(y, ca.vertcat(period, p), c, ca.jacobian(c, y), squared=0)
+    c = ca.vertcat(ca.mtimes(body.rotation, generalized[:3]), generalized[3:], *points)
+    y = ca.vertcat(body.motion, forces)
+    return knot_functions(y, body.p, c, ca.jacobian(c, y), squared=0)
 
 
 def knot_functions(y: Any, p: Any, c: Any, jacobian: Any, squared: int) -> KnotFunctions:

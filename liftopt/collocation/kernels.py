@@ -2,8 +2,8 @@
 
 A kernel's key digests all that it is generated from, so a change of topology, of the generating code, of a library's
 version or of the compiler's options makes another file; ``libraries`` says where files are and which are trusted.
-Processes that start at once on a cold cache do not disturb each other. Without a compiler, CasADi's virtual machine
-evaluates the same functions.
+Processes that start at once on a cold cache do not disturb each other. Where a kernel is neither shipped nor kept and
+there is no compiler, CasADi's virtual machine evaluates the same functions.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Kernel:
 
 
 def load_kernels(requests: Sequence[tuple[Builder, Topology]], say: Say | None = None) -> list[Kernel]:
-    """Return a kernel for each (builder, topology), compiling those that the cache lacks.
+    """Return a kernel for each (builder, topology), compiling those that neither the package nor the cache has.
 
     Args:
         requests: what to load; equal topologies share one kernel.

@@ -28,7 +28,7 @@ FLAGS = ("-O2", "-fno-schedule-insns", "-fno-schedule-insns2", "-fPIC", "-shared
 # Extensions of x86-64 that the code gains from, as both the kernel and the compiler call them.
 EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl")
 # What generated code may call beside arithmetic; a function that is missing here would not compile. The conditions on
-# LANES are those that lane_operations.cpp tests at run time.
+# LANES are those that vectors.hpp tests at run time.
 PRELUDE = """\
 #include <math.h>
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
@@ -72,7 +72,9 @@ class WideKernel:
 
 
 def load_wide(requests: Sequence[tuple[Builder, Topology]], say: Say | None = None) -> list[WideKernel] | None:
-    """Return a wide kernel for each (builder, topology), compiling those that the cache lacks; None where one cannot.
+    """Return a wide kernel for each (builder, topology), or None where one cannot be made.
+
+    Those that neither the package nor the cache has are compiled.
 
     Args:
         requests: what to load; equal topologies share one kernel.

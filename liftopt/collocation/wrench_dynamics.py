@@ -16,13 +16,13 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.collocation.dynamics import (
+    FreeFlyer,
+    HeldArm,
     KnotFunctions,
     Topology,
     clean_rotation,
     knot_functions,
-    quaternion,
     roll_pitch_yaw,
-    symbolic_model,
 )
 
 Array = npt.NDArray[np.float64]
@@ -67,42 +67,26 @@ def wrench_agent_functions(topology: WrenchTopology) -> KnotFunctions:
     """
     import casadi as ca
 
-    cpin, model, p = symbolic_model(topology)
-    n = model.nv
-    period = ca.SX.sym("T")
-    q, dq, ddq, f, m, angles = (
-        ca.SX.sym(name, size) for name, size in (("q", n), ("dq", n), ("ddq", n), ("f", 3), ("m", 3), ("r", 3))
-    )
-    v, a = dq / period, ddq / period**2
-    frame = model.getFrameId(topology.frames[0])
-
-    data = model.createData()
-    dtau_dq, dtau_dv, mass_matrix = cpin.computeRNEADerivatives(model, data, q, v, a)
-    tau_free = cpin.rnea(model, model.createData(), q, v, a)
-    data = model.createData()
-    jacobian_grasp = cpin.computeFrameJacobian(model, data, q, frame, cpin.LOCAL_WORLD_ALIGNED)
-    data = model.createData()
-    cpin.forwardKinematics(model, data, q)
-    cpin.updateFramePlacements(model, data)
-    placement = data.oMf[frame]
+    arm = HeldArm.of(topology)
+    n, (f, m, angles) = arm.tau_free.shape[0], (ca.SX.sym(name, 3) for name in ("f", "m", "r"))
+    frame = topology.model.getFrameId(topology.frames[0])
     local = clean_rotation(topology.model.frames[frame].placement.rotation).T @ topology.turns[0]
-    grip = ca.mtimes(placement.rotation, ca.SX(ca.sparsify(ca.DM(clean_rotation(local)))))
+    grip = ca.mtimes(arm.placement.rotation, ca.SX(ca.sparsify(ca.DM(clean_rotation(local)))))
     attitude, _ = roll_pitch_yaw(ca, angles)
 
-    load = ca.mtimes(jacobian_grasp.T, ca.vertcat(f, m))
+    tau, by_motion = arm.loaded(ca.mtimes(arm.jacobian_grasp.T, ca.vertcat(f, m)))
     cosine = (ca.trace(ca.mtimes(attitude.T, grip)) - 1) / 2
     rest = ca.vertcat(
-        placement.translation,
+        arm.placement.translation,
         ca.dot(f, f),
         ca.dot(m, m),
         cosine,
         ca.mtimes(attitude.T, f),
         ca.mtimes(attitude.T, m),
     )
-    y = ca.vertcat(q, dq, ddq, f, m, angles)
-    by_motion = ca.horzcat(dtau_dq + ca.jacobian(load, q), dtau_dv / period, mass_matrix / period**2)
-    jacobian = ca.vertcat(ca.horzcat(by_motion, jacobian_grasp.T, ca.SX(n, 3)), ca.jacobian(rest, y))
-    return knot_functions(y, ca.vertcat(period, p), ca.vertcat(tau_free + load, rest), jacobian, squared=n)
+    y = ca.vertcat(arm.motion, f, m, angles)
+    jacobian = ca.vertcat(ca.horzcat(by_motion, arm.jacobian_grasp.T, ca.SX(n, 3)), ca.jacobian(rest, y))
+    return knot_functions(y, arm.p, ca.vertcat(tau, rest), jacobian, squared=n)
 
 
 def wrench_object_functions(topology: Topology) -> KnotFunctions:
@@ -112,23 +96,14 @@ def wrench_object_functions(topology: Topology) -> KnotFunctions:
     """
     import casadi as ca
 
-    cpin, model, p = symbolic_model(topology)
-    k = len(topology.frames)
-    period = ca.SX.sym("T")
-    x, dx, ddx, held = (ca.SX.sym(s, size) for s, size in (("x", 6), ("dx", 6), ("ddx", 6), ("h", WRENCH_SIZE * k)))
-
-    rotation, spin = roll_pitch_yaw(ca, x[3:])
-    q = ca.vertcat(x[:3], quaternion(ca, x[3:]))
-    v = ca.vertcat(ca.mtimes(rotation.T, dx[:3]), ca.mtimes(spin, dx[3:])) / period
-    a = ca.jtimes(v, ca.vertcat(x, dx), ca.vertcat(dx, ddx)) / period
-
-    generalized = cpin.rnea(model, model.createData(), q, v, a)
-    points = []
+    body = FreeFlyer.of(topology)
+    held = ca.SX.sym("h", WRENCH_SIZE * len(topology.frames))
+    generalized, points = body.generalized, []
     for name, wrench in zip(topology.frames, ca.vertsplit(held, WRENCH_SIZE), strict=True):
-        lever = model.frames[model.getFrameId(name)].placement.translation
-        points.append(x[:3] + ca.mtimes(rotation, lever))
-        f_body, m_body = ca.mtimes(rotation.T, wrench[:3]), ca.mtimes(rotation.T, wrench[3:])
+        lever = body.model.frames[body.model.getFrameId(name)].placement.translation
+        points.append(body.motion[:3] + ca.mtimes(body.rotation, lever))
+        f_body, m_body = ca.mtimes(body.rotation.T, wrench[:3]), ca.mtimes(body.rotation.T, wrench[3:])
         generalized -= ca.vertcat(f_body, ca.cross(lever, f_body) + m_body)
-    c = ca.vertcat(ca.mtimes(rotation, generalized[:3]), generalized[3:], *points)
-    y = ca.vertcat(x, dx, ddx, held)
-    return knot_functions(y, ca.vertcat(period, p), c, ca.jacobian(c, y), squared=0)
+    c = ca.vertcat(ca.mtimes(body.rotation, generalized[:3]), generalized[3:], *points)
+    y = ca.vertcat(body.motion, held)
+    return knot_functions(y, body.p, c, ca.jacobian(c, y), squared=0)

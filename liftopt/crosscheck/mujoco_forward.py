@@ -119,7 +119,7 @@ class Simulation:
             if np.isinf(worst).any():
                 break
         agents = self.solution.agents
-        limits = np.concatenate([np.maximum(-a.limits.tau_lower, a.limits.tau_upper) for a in agents])
+        limits = np.concatenate([agent.limits.effort for agent in agents])
         names = [n for a in agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves]
         torque = added[self._joints]
         return Followed(Deviation(*worst.tolist()), tuple(names), torque, torque / limits, float(added[self._roll]))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from liftopt.multibody.anthropometry import landmarks, link_lengths
-from liftopt.multibody.human import Subject
 from liftopt.multibody.sources import Source
 from liftopt.scenario import Human
+from liftopt.scene import subject_of
 
 SOURCE = Source(
     "ACGIH (2004), threshold limit values for lifting, Table 1 (at most 2 h a day and 60 lifts an hour), as reprinted "
@@ -25,7 +25,7 @@ BELOW_SHOULDER, ABOVE_SHOULDER = 8.0, 30.0  # cm; the table ends 30 cm above the
 
 def acgih_limit(person: Human, horizontal: float, vertical: float) -> float | None:
     """Return the limit [kg] for hands at H, V [cm], or None where the table knows no safe limit."""
-    subject = Subject(person.stature, person.mass, "male" if person.sex == "male" else "female")
+    subject = subject_of(person)
     lengths, at = link_lengths(subject), landmarks(subject)
     shoulder = 100.0 * (lengths.l1 + lengths.l2)
     knuckles = shoulder - 100.0 * (lengths.l4 + lengths.l5 + lengths.l6)

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.solution import Solution
+from liftopt.summary import limit_share
 
 Array = npt.NDArray[np.float64]
 
@@ -34,12 +35,10 @@ class StrengthUse:
 def strength_use(solution: Solution) -> tuple[StrengthUse, ...]:
     """Return the use of strength of the person's joints, in the order of Table 2."""
     human = solution.agents[0]
-    tau = human.tau[:, human.moving]
-    shares = np.where(tau >= 0.0, tau / human.limits.tau_upper, tau / human.limits.tau_lower)
     names = np.array(human.joint_names)[human.moving]
     return tuple(
         _use(str(name).removeprefix("human_"), share, solution.time)
-        for name, share in zip(names, shares.T, strict=True)
+        for name, share in zip(names, limit_share(human).T, strict=True)
     )
 
 

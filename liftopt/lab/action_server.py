@@ -25,7 +25,6 @@ from liftopt.multibody.sawyer import sawyer_limits
 
 Array = npt.NDArray[np.float64]
 Mode = Literal["velocity", "position", "position_w_id", "torque"]
-MODES: tuple[Mode, ...] = ("velocity", "position", "position_w_id", "torque")
 
 PERIOD = 0.01  # [s]: -r 100
 KP = 2.0  # [1/s]: SawyerVelocityJointTrajectoryActionServer.cfg; ki = kd = 0

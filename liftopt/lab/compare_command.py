@@ -10,7 +10,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from liftopt.lab.record_command import add_divider_arguments, calibration_of
+from liftopt.lab.console_text import captured
+from liftopt.lab.record_command import add_divider_arguments, add_unloaded_argument, calibration_of, unloaded_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -35,13 +36,7 @@ def add_compare_parser(commands: Any, run: Callable[[argparse.Namespace], int]) 
     parser.add_argument("--mocap", nargs="+", default=[], metavar="FOLDER", help="of liftopt mocap, one a trial")
     parser.add_argument("--forces", nargs="+", default=[], metavar="CSV", help="of force sensors; each holds trials")
     parser.add_argument("--calibration", metavar="CAL", help="of the sensors, where a CSV holds voltages")
-    parser.add_argument(
-        "--unloaded",
-        type=float,
-        default=0.0,
-        metavar="S",
-        help="take the preload from the first seconds of a trial, where a CSV marks none",
-    )
+    add_unloaded_argument(parser)
     parser.add_argument(
         "--forces-lift",
         nargs=2,
@@ -69,7 +64,8 @@ def compare_text(args: argparse.Namespace) -> str:
 
     solution, out = load_result(args.result), Path(args.out)
     from liftopt.lab.new_folder import new_folder
-    from liftopt.viz.plots import FORMATS, rendered
+    from liftopt.viz import FORMATS
+    from liftopt.viz.plots import rendered
     from liftopt.viz.plots_comparison import drawn_comparisons
 
     found = _experiment(args, solution)
@@ -84,7 +80,7 @@ def compare_text(args: argparse.Namespace) -> str:
             from liftopt.viz.report import write_report
 
             write_report(solution, folder / "report.html", found)
-    return _json(summary) if args.json else _as_text(found, args.out)
+    return _json(summary) if args.json else captured(lambda console: _print(found, args.out, console))
 
 
 def _experiment(args: argparse.Namespace, solution: Solution) -> Experiment:
@@ -94,8 +90,7 @@ def _experiment(args: argparse.Namespace, solution: Solution) -> Experiment:
     from liftopt.lab.robot_record import read_robot_record
     from liftopt.multibody.bounds import checked_number
 
-    calibration = calibration_of(args)
-    unloaded = checked_number("--unloaded", args.unloaded, 0.0, 3600.0, "s")
+    calibration, unloaded = calibration_of(args), unloaded_of(args)
     span = None
     if args.forces_lift is not None:
         start = checked_number("--forces-lift", args.forces_lift[0], 0.0, 3600.0, "s")
@@ -143,17 +138,7 @@ def _json(summary: dict[str, Any], indent: int | None = None) -> str:
     return json.dumps(summary, indent=indent, allow_nan=False) + "\n"
 
 
-def _as_text(found: Experiment, out: str) -> str:
-    from rich.console import Console
-
-    console = Console()
-    with console.capture() as capture:
-        _print(found, console)
-        console.print(f"Written to {out}", markup=False, highlight=False, soft_wrap=True)
-    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
-
-
-def _print(found: Experiment, console: Console) -> None:
+def _print(found: Experiment, out: str, console: Console) -> None:
     from rich.markup import escape
     from rich.table import Table
 
@@ -174,3 +159,4 @@ def _print(found: Experiment, console: Console) -> None:
     )
     for note in found.notes:
         console.print(f"Note: {note}", markup=False, highlight=False, soft_wrap=True)
+    console.print(f"Written to {out}", markup=False, highlight=False, soft_wrap=True)

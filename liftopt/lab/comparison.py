@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -76,7 +77,7 @@ class Comparison:
             return np.zeros(self.trials.shape[1])
         return np.asarray(self.trials.std(axis=0, ddof=1), float)
 
-    @property
+    @cached_property
     def measures(self) -> Measures:
         """How far apart they are."""
         return measures(self.predicted, self.mean)

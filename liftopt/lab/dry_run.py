@@ -1,10 +1,10 @@
 """The exported motion on a simulated Sawyer: what it would do, and recordings as three trials would give them.
 
-The arm lifts alone. The person and the object are the force that the solution has at the gripper. Simulating the person
-as well would take a controller of the person, which nobody knows and which would decide the result. The person is taken
-to follow the arm: the force is that of the plan where the arm has got to, not when, since a force of 40 N meant for
-another posture would be a disturbance of the simulation's own making; and the hand is led off its path by what the
-gripper is off.
+The arm lifts alone. The person and the object are the force and the moment that the solution has at the gripper.
+Simulating the person as well would take a controller of the person, which nobody knows and which would decide the
+result. The person is taken to follow the arm: force and moment are those of the plan where the arm has got to, not
+when, since a force of 40 N meant for another posture would be a disturbance of the simulation's own making; and the
+hand is led off its path by what the gripper is off.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import ModelError
-from liftopt.interpolation import refined
+from liftopt.interpolation import linear, refined
 from liftopt.lab.action_server import PERIOD, ActionServer, Command, Mode
 from liftopt.lab.joint_trajectory import JointTrajectory, joint_trajectory
 from liftopt.lab.simulated_arm import STEP, SimulatedArm
@@ -134,6 +134,7 @@ class _Plan:
     torque: Array
     tip: Array
     force: Array
+    moment: Array
 
     @classmethod
     def of(cls, solution: Solution) -> _Plan:
@@ -146,6 +147,7 @@ class _Plan:
             JOINT_SIGNS * robot.tau[:, robot.moving],
             robot.grasp_position,
             -robot.grasp_force,
+            -robot.grasp_moment,
         )
 
     def progress(self, position: Array, last: int) -> int:
@@ -154,7 +156,7 @@ class _Plan:
         return last + int(np.argmin(np.square(ahead - position).sum(axis=1)))
 
     def at(self, rows: Array, time: Array) -> Array:
-        return np.stack([np.interp(time, self.time, column) for column in rows.T], axis=-1)
+        return linear(self.time, rows, time)
 
 
 def _trial(
@@ -173,7 +175,7 @@ def _trial(
     arm = SimulatedArm(solution, friction, stiff)
     streamed = None if stiff else _above_gravity(arm, trajectory, plan)
     server = ActionServer(mode, trajectory, goal_time, streamed)
-    arm.rest(JOINT_SIGNS * trajectory.position[0], load * plan.force[0])
+    arm.rest(JOINT_SIGNS * trajectory.position[0], load * plan.force[0], load * plan.moment[0])
     noise = rng.standard_normal((len(time), 3, 7))
     noise *= np.array([POSITION_NOISE, VELOCITY_NOISE, 1.0])[:, None]
     noise[:, 2] *= TORQUE_NOISE * solution.agents[1].limits.tau_upper
@@ -186,7 +188,7 @@ def _trial(
             raise ModelError(f"the simulated arm runs away in {mode} mode at {time[k]:.2f} s; try position_w_id")
         reached = plan.progress(states[k, 0], reached)
         played = min(reached, played + fastest)
-        force = load * plan.force[played]
+        force, moment = load * plan.force[played], load * plan.moment[played]
         for step in range(TICKS):
             now = time[k] + STEP * step
             if now >= 0.0 and (step == phase or not stiff):
@@ -195,7 +197,7 @@ def _trial(
             rate, acceleration, torque = (
                 JOINT_SIGNS * row for row in (command.rate, command.acceleration, command.torque)
             )
-            arm.advance(rate, acceleration, torque, force)
+            arm.advance(rate, acceleration, torque, force, moment)
             if step == 0:
                 tips[k] = arm.tip  # of the state before the step
     seen = states + noise

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.interpolation import linear
 from liftopt.lab.action_server import SPEED_RATIO
 from liftopt.lab.dry_run import DryRun
 from liftopt.multibody.sawyer import sawyer_limits
@@ -168,8 +169,8 @@ def _delay(run: DryRun) -> float:
 
 
 def _off_path(run: DryRun, tip: Array) -> float:
-    rows = np.arange(len(run.time))
+    rows = np.arange(len(run.time), dtype=float)
     fine = np.linspace(0, len(rows) - 1, PATH_STEPS * (len(rows) - 1) + 1)
-    path = np.stack([np.interp(fine, rows, column) for column in run.planned_tip.T], axis=1)
+    path = linear(rows, run.planned_tip, fine)
     path = path[np.concatenate([[True], np.any(np.diff(path, axis=0) != 0.0, axis=1)])]
     return max(float(np.sqrt(np.square(path - point).sum(axis=1).min())) for point in tip)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from liftopt.lab.record_command import add_divider_arguments, calibration_of
+from liftopt.lab.record_command import add_divider_arguments, add_unloaded_argument, calibration_of, unloaded_of
 
 
 def add_forces_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
@@ -22,13 +22,7 @@ def add_forces_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
     parser.add_argument("recording", metavar="FILE", help="CSV of liftopt record, or with the columns it has")
     parser.add_argument("--calibration", metavar="CAL", help="of the sensors, where FILE holds voltages")
     parser.add_argument("--out", metavar="FILE", help="CSV in newtons to write; it must not exist")
-    parser.add_argument(
-        "--unloaded",
-        type=float,
-        default=0.0,
-        metavar="S",
-        help="take the preload from the first seconds of a trial, where FILE marks none",
-    )
+    add_unloaded_argument(parser)
     add_divider_arguments(parser)
     parser.set_defaults(run=run)
 
@@ -42,9 +36,8 @@ def forces_text(args: argparse.Namespace) -> str:
     import numpy as np
 
     from liftopt.lab.force_file import read_forces, write_forces
-    from liftopt.multibody.bounds import checked_number
 
-    unloaded = checked_number("--unloaded", args.unloaded, 0.0, 3600.0, "s")
+    unloaded = unloaded_of(args)
     trials = read_forces(Path(args.recording), calibration_of(args), unloaded)
     lines = []
     for one in trials:

@@ -57,11 +57,6 @@ def joint_trajectory(solution: Solution, rate: float = RATE) -> JointTrajectory:
     rate = checked_number("--rate", rate, 10.0, 1000.0, "Hz")
     duration = float(solution.time[-1])
     time = np.append(np.arange(int(np.ceil(duration * rate - SHORTEST))) / rate, duration)
-    return motion_at(solution, time)
-
-
-def motion_at(solution: Solution, time: Array) -> JointTrajectory:
-    """Return the robot's motion of a solution at ``time`` (K,) [s] within the lift."""
     robot = solution.agents[1]
     knots = [JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.a)]
     q, v, a = motion_between(solution.time, knots[0], knots[1], knots[2], time)

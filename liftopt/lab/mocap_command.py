@@ -10,6 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from liftopt.lab.console_text import captured
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -93,7 +95,7 @@ def mocap(args: argparse.Namespace) -> str:
     return (
         json.dumps(summary_dict(lift, Path(args.out)), allow_nan=False) + "\n"
         if args.json
-        else _as_text(lift, args.out)
+        else captured(lambda console: _print(lift, args.out, console))
     )
 
 
@@ -127,15 +129,6 @@ def summary_dict(lift: RecordedLift, out: Path) -> dict[str, Any]:
         },
         "peak_torque": {name: float(abs(lift.tau[:, i]).max()) for i, name in enumerate(lift.joint_names)},
     }
-
-
-def _as_text(lift: RecordedLift, out: str) -> str:
-    from rich.console import Console
-
-    console = Console()
-    with console.capture() as capture:
-        _print(lift, out, console)
-    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
 
 
 def _print(lift: RecordedLift, out: str, console: Console) -> None:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.recording import Array
-from liftopt.lab.text_file import number_table, read_lines, stated_count
+from liftopt.lab.text_file import check_rising, contradictions, number_table, read_lines
 
 WHAT = "a MOT or STO file"
 
@@ -51,8 +49,8 @@ def read_motion_table(path: Path) -> MotionTable:
     """Return the columns of a MOT or STO file.
 
     Layout: a title, ``key=value`` lines and remarks, ``endheader``, the names of the columns, rows. Rows may be
-        separated by
-    tabs, commas or blanks. Where counts of the header contradict the rows, the rows are believed and that is noted.
+    separated by tabs, commas or blanks. Where counts of the header contradict the rows, the rows are believed and that
+    is noted.
 
     Raises:
         InputError: the file cannot be read or is not laid out so, a name stands twice, or time does not increase; the
@@ -76,14 +74,9 @@ def read_motion_table(path: Path) -> MotionTable:
     table, used, notes = number_table(lines[at + 1 :], names)
     if not len(table):
         raise InputError(source, NO_VALUE, "holds no rows")
-    for key, count in (("nrows", len(table)), ("ncolumns", len(names))):
-        stated = stated_count(header.get(key))
-        if stated is not None and stated != count:
-            notes.append(f"the header says {key} {stated}, the file holds {count}")
+    notes += contradictions(header, {"nrows": len(table), "ncolumns": len(names)})
     time = table[:, 0]
-    for i in range(len(time)):
-        if not np.isfinite(time[i]) or (i and time[i] <= time[i - 1]):
-            raise used[i].error(float(time[i]), "the time must be a number that increases from line to line")
+    check_rising(time, used)
     degrees = {"yes": True, "no": False}.get(header.get("indegrees", "").lower())
     title = " ".join(lines[0].filled)
     return MotionTable(source, title, degrees, time, names[1:], table[:, 1:], tuple(notes))

@@ -24,14 +24,12 @@ class ObjectMotion:
         quaternion: (F, 4) x y z w, turn in the world since the first frame.
         acceleration: (F, 3) of the position [m/s^2].
         carried: first and last frame in which it is away from where it lay before and after.
-        scatter: root mean square distance of its markers from a rigid body [m].
     """
 
     position: Array
     quaternion: Array
     acceleration: Array
     carried: tuple[int, int]
-    scatter: float
 
 
 def object_motion(time: Array, points: Array, source: str) -> ObjectMotion:
@@ -57,8 +55,7 @@ def object_motion(time: Array, points: Array, source: str) -> ObjectMotion:
     turn = poses.rotation @ poses.rotation[0].T
     quaternion = np.array([pin.Quaternion(rotation).coeffs() for rotation in turn])
     acceleration = np.asarray(make_interp_spline(time, position, k=5).derivative(2)(time))
-    scatter = np.sqrt(np.nanmean(((poses.to_body(points[:, known]) - shape[known]) ** 2).sum(axis=2)))
-    return ObjectMotion(position, quaternion, acceleration, _carried(position), float(scatter))
+    return ObjectMotion(position, quaternion, acceleration, _carried(position))
 
 
 def load_force(motion: ObjectMotion, mass: float, share: float) -> Array:

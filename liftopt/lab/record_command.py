@@ -59,6 +59,28 @@ def add_divider_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_unloaded_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says where a recording without a mark has its preload."""
+    parser.add_argument(
+        "--unloaded",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="take the preload from the first seconds of a trial, where a CSV marks none",
+    )
+
+
+def unloaded_of(args: argparse.Namespace) -> float:
+    """Return the seconds of that option.
+
+    Raises:
+        InputError: they are out of range.
+    """
+    from liftopt.multibody.bounds import checked_number
+
+    return checked_number("--unloaded", args.unloaded, 0.0, 3600.0, "s")
+
+
 def divider_of(args: argparse.Namespace, known: Divider | None = None) -> Divider:
     """Return the dividers of the command line; what is not given there is as in ``known``, or usual.
 

@@ -91,7 +91,7 @@ def load_recorded(path: str | Path) -> RecordedLift:
             carried=tuple(carried) if (carried := about.pop("carried")) else None,
             **about,
         )
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError, AttributeError, RuntimeError) as error:
         raise InputError(str(path), NO_VALUE, f"is not a recorded lift: {error}") from error
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.interpolation import linear
 from liftopt.lab.anatomy import Array, skeleton
 from liftopt.lab.c3d import read_c3d
 from liftopt.lab.filtering import low_pass
@@ -116,10 +117,8 @@ class RecordedLift:
         The lift is the time in which the object is carried, the whole recording if it has none.
         """
         start, end = self.carried or (self.time[0], self.time[-1])
-        flat = values.reshape(len(self.time), -1)
-        at = np.linspace(start, end, samples)
-        columns = [np.interp(at, self.time, column) for column in flat.T]
-        return np.stack(columns, axis=1).reshape(samples, *values.shape[1:])
+        rows = linear(self.time, values.reshape(len(self.time), -1), np.linspace(start, end, samples))
+        return rows.reshape(samples, *values.shape[1:])
 
 
 def read_recording(path: Path) -> Recording:

@@ -12,20 +12,18 @@ from liftopt.lab.recording import Recording
 from liftopt.lab.scaling import ScaledSubject, measured_chain
 from liftopt.lab.tracking import TrackedMarker
 from liftopt.multibody.agent import Agent, JointLimits
-from liftopt.multibody.human import GRASP, NAME, VIRTUAL, human_chain, human_limits, human_root
-from liftopt.multibody.human_shapes import human_shapes
-from liftopt.multibody.range_of_motion import RANGES
-from liftopt.multibody.urdf import (
-    HELD,
-    FixedLink,
-    JointBounds,
-    chain_robot,
-    joint_name,
-    link_placements,
-    load_model,
-    shapes_on_links,
-    urdf_text,
+from liftopt.multibody.human import (
+    GRASP,
+    NAME,
+    VIRTUAL,
+    chain_urdf,
+    human_chain,
+    human_limits,
+    joint_bounds,
+    placed_shapes,
 )
+from liftopt.multibody.range_of_motion import RANGES
+from liftopt.multibody.urdf import HELD, joint_name, load_model
 
 # How far the base of the spine may move from where it is while standing [m], and how fast [m/s]: to squat and to walk.
 BASE_TRAVEL, BASE_SPEED = 20.0, 5.0
@@ -114,14 +112,8 @@ def _agent(scaled: ScaledSubject) -> Agent:
         tau_lower=np.concatenate([np.full(3, -HELD.effort), arm.tau_lower]),
         tau_upper=np.concatenate([np.full(3, HELD.effort), arm.tau_upper]),
     )
-    effort = np.maximum(-limits.tau_lower, limits.tau_upper)
     rows = (*VIRTUAL, *(item.joint for item in RANGES))
-    bounds = {
-        row: JointBounds(*map(float, values))
-        for row, *values in zip(rows, limits.q_lower, limits.q_upper, effort, limits.velocity, strict=True)
-    }
     # Shapes are the subject's own: they are only looked at.
-    shapes = shapes_on_links(link_placements(human_chain(scaled.subject), human_root()), human_shapes(scaled.subject))
-    root = FixedLink("human_base", "world", human_root())
-    text = urdf_text(chain_robot(measured_chain(scaled), root=root, bounds=bounds, shapes=shapes, grasp=GRASP))
+    shapes = placed_shapes(human_chain(scaled.subject), scaled.subject)
+    text = chain_urdf(measured_chain(scaled), joint_bounds(rows, limits), shapes)
     return Agent(NAME, text, load_model(text), (), GRASP, limits, np.zeros(len(rows)))

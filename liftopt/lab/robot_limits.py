@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.interpolation import refined
-from liftopt.lab.joint_trajectory import JOINTS, JointTrajectory, motion_at
+from liftopt.lab.joint_trajectory import JOINTS, JointTrajectory
 from liftopt.multibody.sawyer import JOINT_SIGNS, sawyer_limits
 from liftopt.solution import Solution
 
@@ -39,11 +39,10 @@ def check_limits(solution: Solution) -> None:
     """
     limits, dense = sawyer_limits(), refined(solution, FINER)
     time, robot = dense.time, dense.agents[1]
-    motion = motion_at(solution, time)
+    q, v, tau = (JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.tau))
     ends = np.sort(JOINT_SIGNS * np.stack([limits.q_lower, limits.q_upper]), axis=0)
-    tau = JOINT_SIGNS * robot.tau[:, robot.moving]
-    _within("is at", motion.position, ends, time, "rad")
-    _within("turns at", motion.velocity, limits.velocity * [[-1.0], [1.0]], time, "rad/s")
+    _within("is at", q, ends, time, "rad")
+    _within("turns at", v, limits.velocity * [[-1.0], [1.0]], time, "rad/s")
     _within("needs", tau, limits.tau_upper * [[-1.0], [1.0]], time, "Nm")
 
 

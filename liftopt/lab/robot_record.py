@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.interpolation import linear
 from liftopt.lab.extra import check_extra
 from liftopt.lab.joint_trajectory import JOINTS
 from liftopt.lab.ros_messages import JOINT_STATE, ROS1_GOAL, ROS2_GOAL, SECOND, TRAJECTORY
@@ -56,7 +57,7 @@ class RobotRecord:
             raise InputError(
                 self.source, f"{self.time[-1]:.2f} s", f"must last the lift's {duration:g} s from its beginning"
             )
-        return np.stack([np.interp(share * duration, self.time, column) for column in values.T], axis=1)
+        return linear(self.time, values, share * duration)
 
 
 def read_robot_record(path: Path) -> RobotRecord:

@@ -15,15 +15,14 @@ from liftopt.multibody.anthropometry import DIMENSIONS, LinkLengths, link_length
 from liftopt.multibody.dh import BodyInertia, DHChain, human_rows
 from liftopt.multibody.human import NAME, human_chain
 from liftopt.multibody.segments import SEGMENTS
-from liftopt.multibody.sources import MODEL_CHOICE, Source
 from liftopt.multibody.subject import Sex, Subject
 
 # Hip joint centres below the front spines of the pelvis, over the distance of these: Bell, Pedersen & Brand (1990),
 # J Biomech 23:617-621.
 HIP_BELOW_ASIS = 0.30
-# How far the stature may be off that one segment implies [m]: people of one stature differ in their proportions.
+# How far the stature may be off that one segment implies [m]: people of one stature differ in their proportions; our
+# choice.
 SPREAD: dict[str, float] = {"trunk": 0.10, "upper arm": 0.065, "forearm": 0.05}
-SPREAD_SOURCE: Source = MODEL_CHOICE
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Sawyer alone in MuJoCo: the solved URDF, joint servos at 1 kHz, friction, and the person's part as a force.
+"""Sawyer alone in MuJoCo: the solved URDF, joint servos at 1 kHz, friction, and the person's part as a wrench.
 
 What stands between a command and the arm, which nobody outside the manufacturer knows, is modelled as one servo with
 a reference that moves at the commanded velocity:
@@ -26,7 +26,7 @@ import numpy.typing as npt
 from liftopt.mujoco_model import import_mujoco, spec_of
 from liftopt.multibody.sawyer import GRASP, MOVING, NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name
-from liftopt.scene import URDF_FILES
+from liftopt.result_folder import URDF_FILES
 from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -38,6 +38,7 @@ RESET = 2.0  # I / P [1/s]; estimate
 # sawyer_robot, commit d1ef3d0, sawyer_base.urdf.xacro, tuned for that simulator; no measured figures are published.
 FRICTION = np.array([5.0, 2.0, 2.0, 0.5, 1.0, 0.5, 0.5])  # dry [Nm]
 VISCOUS = np.array([10.0, 5.0, 5.0, 1.0, 2.0, 1.0, 1.0])  # [Nm s/rad]
+NONE = np.zeros(3)
 
 
 class SimulatedArm:
@@ -98,28 +99,29 @@ class SimulatedArm:
         self._mujoco.mj_forward(self._model, data)
         return np.array(data.qfrc_bias)
 
-    def rest(self, q: Array, force: Array) -> None:
-        """Put the arm at rest at ``q`` (7,), its servo settled under ``force`` (3,) on the gripper, world axes [N]."""
+    def rest(self, q: Array, force: Array, moment: Array = NONE) -> None:
+        """Put the arm at rest at ``q`` (7,), its servo settled under ``force`` and ``moment`` as in ``advance``."""
         self._mujoco.mj_resetData(self._model, self._data)
         self._data.qpos[:] = self.reference = q
         self._mujoco.mj_forward(self._model, self._data)
-        self._holding = -self._pull(force)
+        self._holding = -self._pull(force, moment)
         self.torque = self._data.qfrc_bias + self._holding
 
-    def advance(self, rate: Array, acceleration: Array, torque: Array, force: Array) -> None:
+    def advance(self, rate: Array, acceleration: Array, torque: Array, force: Array, moment: Array = NONE) -> None:
         """Go on by ``STEP``.
 
         Args:
             rate: (7,) of the servo's reference [rad/s].
             acceleration: (7,) fed forward through the arm's own inertia [rad/s^2].
             torque: (7,) on top of all that [Nm].
-            force: (3,) on the gripper, world axes [N].
+            force: (3,) on the gripper at the grasp point, world axes [N].
+            moment: (3,) about that point, world axes [Nm].
         """
         mujoco, model, data = self._mujoco, self._model, self._data
         self.reference = self.reference + STEP * rate
         self._holding += STEP * RESET * STIFFNESS * (self.reference - data.qpos)
         mujoco.mj_step1(model, data)  # what depends on position and velocity, where the arm is now
-        data.qfrc_applied[:] = self._pull(force)
+        data.qfrc_applied[:] = self._pull(force, moment)
         forward = np.zeros(7)
         mujoco.mj_mulM(model, data, forward, acceleration)
         servo = STIFFNESS * self.reference + DAMPING * rate + forward + self._holding
@@ -131,8 +133,8 @@ class SimulatedArm:
         mujoco.mj_mulM(model, data, inertial, (data.qvel - before) / STEP)
         self.torque = inertial + data.qfrc_bias - data.qfrc_applied
 
-    def _pull(self, force: Array) -> Array:
-        """Return a force on the gripper as joint torques (7,)."""
+    def _pull(self, force: Array, moment: Array) -> Array:
+        """Return a force and a moment on the gripper as joint torques (7,)."""
         pull = np.zeros(7)
-        self._mujoco.mj_applyFT(self._model, self._data, force, np.zeros(3), self.tip, self._tip, pull)
+        self._mujoco.mj_applyFT(self._model, self._data, force, moment, self.tip, self._tip, pull)
         return pull

@@ -10,6 +10,7 @@ import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.recording import Array
+from liftopt.regular_file import read_regular
 
 LARGEST_FILE = 500_000_000  # bytes; an hour of 60 markers at 100 Hz in a TRC file
 
@@ -82,22 +83,14 @@ def read_text(path: Path, what: str) -> bytes:
     Raises:
         InputError: the file cannot be read, is empty, too large, or not text.
     """
-    source = str(path)
     try:
-        if path.exists() and not path.is_file():
-            raise InputError(source, NO_VALUE, f"is not a file; expected {what}")
-        with path.open("rb") as file:
-            raw = file.read(LARGEST_FILE + 1)
+        raw = read_regular(path, LARGEST_FILE, f"expected {what}")
     except FileNotFoundError:
-        raise InputError(source, NO_VALUE, "no such file") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        raise InputError(source, NO_VALUE, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise InputError(str(path), NO_VALUE, "no such file") from None
     if not raw.strip():
-        raise InputError(source, NO_VALUE, f"is empty; expected {what}")
-    if len(raw) > LARGEST_FILE:
-        raise InputError(source, NO_VALUE, f"is larger than {LARGEST_FILE} bytes; expected {what}")
+        raise InputError(str(path), NO_VALUE, f"is empty; expected {what}")
     if b"\0" in raw:
-        raise InputError(source, NO_VALUE, f"is a binary file; expected {what}")
+        raise InputError(str(path), NO_VALUE, f"is a binary file; expected {what}")
     return raw
 
 
@@ -108,7 +101,27 @@ def _fields(line: str) -> tuple[str, ...]:
     return tuple(line.split())
 
 
-def stated_count(text: str | None) -> int | None:
+def contradictions(header: dict[str, str], counted: dict[str, int]) -> list[str]:
+    """Return a note for each count of a header that is not what was ``counted`` under its key."""
+    return [
+        f"the header says {key} {stated}, the file holds {count}"
+        for key, count in counted.items()
+        if (stated := _stated_count(header.get(key))) is not None and stated != count
+    ]
+
+
+def check_rising(time: Array, lines: list[Line]) -> None:
+    """Check that the times (K,) of ``lines`` are numbers that increase.
+
+    Raises:
+        InputError: one is not; it names the line.
+    """
+    for i in range(len(time)):
+        if not np.isfinite(time[i]) or (i and time[i] <= time[i - 1]):
+            raise lines[i].error(float(time[i]), "the time must be a number that increases from line to line")
+
+
+def _stated_count(text: str | None) -> int | None:
     """Return a count as a header states it, None if there is none or it is no whole number."""
     try:
         return None if text is None else int(float(text))

@@ -44,13 +44,11 @@ class TrackedMotion:
     Attributes:
         q: (F, nq) [rad or m].
         residual: (F, M) distance of each measured marker from the model's, NaN where it was not seen [m].
-        iterations: (F,) of each frame.
         at_limit: (F, nq) True where a joint stands at a limit of its range.
     """
 
     q: Array
     residual: Array
-    iterations: npt.NDArray[np.int_]
     at_limit: npt.NDArray[np.bool_]
 
 
@@ -80,17 +78,16 @@ def track(
     q = np.clip(start, lower, upper)
     count, data = len(targets), model.createData()
     positions, residual = np.zeros((count, model.nq)), np.full(targets.shape[:2], np.nan)
-    iterations = np.zeros(count, dtype=int)
     for frame in range(count):
         seen = np.isfinite(targets[frame]).all(axis=1)
         if seen.any():
             cluster = _Markers.of(model, data, [marker for marker, there in zip(markers, seen, strict=True) if there])
             most = ITERATIONS if frame else FIRST_ITERATIONS
-            q, iterations[frame] = _solve(cluster, targets[frame, seen], lower, upper, q, most)
+            q = _solve(cluster, targets[frame, seen], lower, upper, q, most)
             residual[frame, seen] = np.linalg.norm(cluster.places(q) - targets[frame, seen], axis=1)
         positions[frame] = q
     at_limit = ((positions <= lower + 1e-9) | (positions >= upper - 1e-9)) & (lower < upper)
-    return TrackedMotion(positions, residual, iterations, at_limit)
+    return TrackedMotion(positions, residual, at_limit)
 
 
 @dataclass(frozen=True)
@@ -130,10 +127,10 @@ class _Markers:
         return slopes.reshape(-1, self.model.nv)
 
 
-def _solve(markers: _Markers, targets: Array, lower: Array, upper: Array, q: Array, most: int) -> tuple[Array, int]:
+def _solve(markers: _Markers, targets: Array, lower: Array, upper: Array, q: Array, most: int) -> Array:
     damping = LEAST_DAMPING
     error = (markers.places(q) - targets).ravel()
-    for iteration in range(1, most + 1):
+    for _ in range(most):
         slopes = markers.jacobian(q)
         gradient = slopes.T @ error
         free = ~(((q <= lower) & (gradient > 0.0)) | ((q >= upper) & (gradient < 0.0)) | (lower == upper))
@@ -151,6 +148,6 @@ def _solve(markers: _Markers, targets: Array, lower: Array, upper: Array, q: Arr
         if better:
             q, error = trial, trial_error
         if moved < CONVERGED or not better:
-            return q, iteration
+            break
         damping = max(damping / 10.0, LEAST_DAMPING)
-    return q, most
+    return q

@@ -12,7 +12,6 @@ from liftopt.lab.joint_trajectory import JointTrajectory
 from liftopt.lab.ros_messages import SECOND, TRAJECTORY, RosMessages
 
 Format = Literal["ros1", "ros2", "mcap", "csv", "json"]
-FORMATS: tuple[Format, ...] = ("ros1", "ros2", "mcap", "csv", "json")
 NAME = "trajectory"
 GOAL_TOPIC = "/robot/limb/right/follow_joint_trajectory/goal"  # the action server listens here
 TRAJECTORY_TOPIC = "/liftopt/joint_trajectory"  # nobody does here

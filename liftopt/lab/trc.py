@@ -8,7 +8,7 @@ import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.recording import Array, Recording, checked_recording
-from liftopt.lab.text_file import Line, number_table, read_lines, stated_count
+from liftopt.lab.text_file import Line, check_rising, contradictions, number_table, read_lines
 
 WHAT = "a TRC file"
 OFF_GRID = 0.15  # frames; further from the frame grid than this a time stamp is wrong, for all its few digits
@@ -17,10 +17,10 @@ OFF_GRID = 0.15  # frames; further from the frame grid than this a time stamp is
 def read_trc(path: Path) -> Recording:
     """Return the markers of a TRC file.
 
-    Layout: ``PathFileType 4 (X/Y/Z) name``; names and values of the header (``DataRate``, ``Units``...); ``Frame#
-        Time`` and
-    marker names, each over three columns; ``X1 Y1 Z1 X2``...; rows. Where counts and rate of the header contradict the
-    rows, the rows are believed and that is noted. Frames that are missing become frames in which no marker was seen.
+    Layout: ``PathFileType 4 (X/Y/Z) name``; names and values of the header (``DataRate``, ``Units``...);
+    ``Frame# Time`` and marker names, each over three columns; ``X1 Y1 Z1 X2``...; rows. Where counts and rate of the
+    header contradict the rows, the rows are believed and that is noted. Frames that are missing become frames in which
+    no marker was seen.
 
     Raises:
         InputError: the file cannot be read or is not laid out so; the message names the line.
@@ -39,10 +39,7 @@ def read_trc(path: Path) -> Recording:
     table, used, notes = number_table(lines[body:], names)
     if not len(table):
         raise InputError(source, NO_VALUE, "holds no frames")
-    for key, count in (("NumFrames", len(table)), ("NumMarkers", len(labels))):
-        stated = stated_count(header.get(key))
-        if stated is not None and stated != count:
-            notes.append(f"the header says {key} {stated}, the file holds {count}")
+    notes += contradictions(header, {"NumFrames": len(table), "NumMarkers": len(labels)})
     time, rate = table[:, 1], _rate(header, table[:, 1], used, notes)
     points = table[:, 2:].reshape(len(table), len(labels), 3)
     time, points = _on_grid(time, points, rate, used, notes)
@@ -68,9 +65,7 @@ def _names_axes(line: Line) -> bool:
 
 def _rate(header: dict[str, str], time: Array, lines: list[Line], notes: list[str]) -> float:
     """Return the rate on whose grid the time stamps lie: the stated one if it fits, else that of the stamps."""
-    for i in range(len(time)):
-        if not np.isfinite(time[i]) or (i and time[i] <= time[i - 1]):
-            raise lines[i].error(float(time[i]), "the time must be a number that increases from line to line")
+    check_rising(time, lines)
     try:
         stated = float(header.get("DataRate", "nan"))
     except ValueError:

@@ -33,6 +33,11 @@ class JointLimits:
     tau_lower: Array
     tau_upper: Array
 
+    @property
+    def effort(self) -> Array:
+        """Larger of the two torque limits (n,), in either direction [Nm]."""
+        return np.maximum(-self.tau_lower, self.tau_upper)
+
 
 @dataclass(frozen=True)
 class HalfSpace:

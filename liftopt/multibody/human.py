@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import radians
 
 import numpy as np
@@ -19,6 +20,7 @@ from liftopt.multibody.dh import (
 from liftopt.multibody.human_bodies import human_bodies
 from liftopt.multibody.human_shapes import human_shapes
 from liftopt.multibody.range_of_motion import RANGES
+from liftopt.multibody.shapes import Shape
 from liftopt.multibody.strength import torque_limit
 from liftopt.multibody.subject import Sex, Subject
 from liftopt.multibody.urdf import (
@@ -107,11 +109,22 @@ def human_agent(subject: Subject, urdf: str | None = None) -> Agent:
 def human_urdf(subject: Subject) -> str:
     """Return the subject's URDF."""
     chain, limits = human_chain(subject), human_limits(subject.sex)
-    shapes = shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
-    effort = np.maximum(-limits.tau_lower, limits.tau_upper)
-    bounds = dict.fromkeys(VIRTUAL, HELD) | {
-        item.joint: JointBounds(*map(float, values))
-        for item, *values in zip(RANGES, limits.q_lower, limits.q_upper, effort, limits.velocity, strict=True)
-    }
+    bounds = dict.fromkeys(VIRTUAL, HELD) | joint_bounds((item.joint for item in RANGES), limits)
+    return chain_urdf(chain, bounds, placed_shapes(chain, subject))
+
+
+def joint_bounds(rows: Iterable[str], limits: JointLimits) -> dict[str, JointBounds]:
+    """Return limits as URDF has them, by row of the chain; its one effort is that of the stronger direction."""
+    columns = zip(rows, limits.q_lower, limits.q_upper, limits.effort, limits.velocity, strict=True)
+    return {row: JointBounds(*map(float, values)) for row, *values in columns}
+
+
+def placed_shapes(chain: DHChain, subject: Subject) -> dict[str, tuple[Shape, ...]]:
+    """Return the subject's shapes in the frames of the links of ``chain``, the subject's own."""
+    return shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
+
+
+def chain_urdf(chain: DHChain, bounds: dict[str, JointBounds], shapes: dict[str, tuple[Shape, ...]]) -> str:
+    """Return the URDF of a chain with the rows of Table 2, bounds and shapes by row."""
     root = FixedLink("human_base", "world", human_root())
     return urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=GRASP))

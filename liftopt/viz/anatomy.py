@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.summary import joint_meaning
+from liftopt.summary import joint_meaning, limit_share
 from liftopt.trajectory import AgentTrajectory
 
 Array = npt.NDArray[np.float64]
@@ -100,7 +100,6 @@ def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCu
     column = agent.joint_names.index(f"{agent.name}_{joint}")
     row = int(np.count_nonzero(agent.moving[:column]))
     limits, tau = agent.limits, agent.tau[:, column]
-    share = np.where(tau >= 0.0, tau / limits.tau_upper[row], tau / limits.tau_lower[row])
     q = np.degrees([limits.q_lower[row], limits.q_upper[row]])
     lower, upper = float(limits.tau_lower[row]), float(limits.tau_upper[row])
     return JointCurve(
@@ -112,5 +111,5 @@ def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCu
         q_limits=(float(min(sign * q)), float(max(sign * q))),
         tau_limits=(min(sign * lower, sign * upper), max(sign * lower, sign * upper)),
         v_limit=float(np.degrees(limits.velocity[row])),
-        share=share,
+        share=limit_share(agent)[:, row],
     )

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
-from scipy.interpolate import CubicHermiteSpline
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.interpolation import motion_between
 from liftopt.multibody.agent import Agent
 from liftopt.scene import agents_of
 from liftopt.solution import Solution
@@ -65,8 +65,8 @@ class Playback:
 def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     """Return the lift at ``frame_rate`` [Hz], the last frame at its very end.
 
-    In between knots it is the spline that was solved: a cubic follows from value and slope at its two ends. Forces are
-    linear between knots, as the optimal-control problem has them.
+    In between knots it is the spline that was solved. Forces are linear between knots, as the optimal-control problem
+    has them.
 
     Raises:
         InputError: the solution holds numbers that are not finite, or its time does not run forward.
@@ -78,7 +78,7 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     forces: dict[str, ForceTrack] = {}
     zero: dict[str, Array] = {}
     for agent, track in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
-        q = CubicHermiteSpline(knots, track.q, track.v)(time)
+        q = motion_between(knots, track.q, track.v, track.a, time)[0]
         placements = _placements(agent, q)
         bodies |= {name: _track(list_) for name, list_ in placements.items()}
         forces[agent.name] = _force(agent, track, knots, time, q)
@@ -86,7 +86,7 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
             name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
         }
     held = solution.held
-    pose = CubicHermiteSpline(knots, held.pose, held.pose_velocity)(time)
+    pose = motion_between(knots, held.pose, held.pose_velocity, held.pose_acceleration, time)[0]
     bodies[held.name] = _track([_object_placement(row) for row in pose])
     zero[held.name] = np.eye(4)
     return Playback(time, bodies, forces, zero)
@@ -94,8 +94,8 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
 
 def _check(solution: Solution) -> None:
     name, held = solution.scenario.name, solution.held
-    shown = [solution.time, held.pose, held.pose_velocity]
-    shown += [values for agent in solution.agents for values in (agent.q, agent.v, agent.grasp_force)]
+    shown = [solution.time, held.pose, held.pose_velocity, held.pose_acceleration]
+    shown += [values for agent in solution.agents for values in (agent.q, agent.v, agent.a, agent.grasp_force)]
     if not all(np.isfinite(values).all() for values in shown):
         raise InputError(name, NO_VALUE, "cannot be shown: the result holds numbers that are not finite")
     if len(solution.time) < 2 or not (np.diff(solution.time) > 0.0).all():

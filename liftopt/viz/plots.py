@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from liftopt.errors import InputError
 from liftopt.solution import Solution
+from liftopt.viz import FORMATS
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_effort import posture_score, strength_used
 from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motion
@@ -19,7 +20,6 @@ from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, rob
 from liftopt.viz.plots_snapshots import snapshots
 from liftopt.viz.plots_style import STYLE
 
-FORMATS = ("svg", "png", "pdf")
 PNG_DPI = 200
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from liftopt.summary import FREE_FALL
+from liftopt.summary import shares
 from liftopt.trajectory import AgentTrajectory
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, Array, draw, legend_above, panels, percent, time_axes
+from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes
 
 COMPONENTS = ("x, towards the robot", "y, to the person's left", "z, up")
 
@@ -84,15 +84,6 @@ def object_motion(lift: Lift) -> Figure:
     speed.set(title="Speed of its centre of mass", ylabel="speed [m/s]")
     time_axes(grid, float(solution.time[-1]))
     return figure
-
-
-def shares(agents: tuple[AgentTrajectory, ...]) -> Array:
-    """Return each agent's part (agents, K) of the vertical grasp force; NaN where there is no load to share."""
-    vertical = np.stack([agent.grasp_force[:, 2] for agent in agents])
-    load = vertical.sum(axis=0)
-    part = np.full_like(vertical, np.nan)
-    np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
-    return part
 
 
 def _moments(axes: Axes, lift: Lift, agents: list[AgentTrajectory]) -> None:

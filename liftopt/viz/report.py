@@ -15,11 +15,10 @@ from liftopt.ergonomics.assessment import Assessment, assess
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.solution import Solution
-from liftopt.summary import GRAVITY, summary_dict
+from liftopt.summary import GRAVITY, shares, summary_dict
 from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
 from liftopt.viz.plots_comparison import experiment_tables
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_forces import shares
 from liftopt.viz.report_figures import inline_comparisons, inline_figures
 from liftopt.viz.report_findings import NEAR_LIMIT, findings
 from liftopt.viz.report_tables import Headline, check_rows, joint_rows, scenario_rows, source_rows

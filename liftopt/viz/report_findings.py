@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 from liftopt.ergonomics.assessment import Assessment
 from liftopt.ergonomics.rula import ACTION
-from liftopt.multibody.human import Subject
 from liftopt.multibody.provenance import subject_quantities
+from liftopt.scene import subject_of
 from liftopt.solution import Solution
-from liftopt.summary import GRAVITY
+from liftopt.summary import GRAVITY, squeeze
 from liftopt.viz.anatomy import JointCurve
 
 Array = npt.NDArray[np.float64]
@@ -102,16 +102,13 @@ def _grasp(dense: Solution) -> Iterator[Finding]:
             f"Grasp force at its cap for {100 * at_cap.mean():.0f} % of the lift",
             f"Only limits.max_grasp_force = {cap:g} N holds it back: the motion rests on that choice.",
         )
-    first, second = dense.agents
-    line = second.grasp_position - first.grasp_position
-    line = line / np.linalg.norm(line, axis=1, keepdims=True)
-    squeeze = 0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line)
-    k, weight = int(np.argmax(np.abs(squeeze))), dense.scenario.table.mass * GRAVITY
-    if abs(squeeze[k]) > weight:
-        verb = "press it together" if squeeze[k] > 0 else "pull it apart"
+    squeezed = squeeze(dense.agents)
+    k, weight = int(np.argmax(np.abs(squeezed))), dense.scenario.table.mass * GRAVITY
+    if abs(squeezed[k]) > weight:
+        verb = "press it together" if squeezed[k] > 0 else "pull it apart"
         yield Finding(
             "warning",
-            f"The hands work against each other with up to {abs(squeeze[k]):.0f} N",
+            f"The hands work against each other with up to {abs(squeezed[k]):.0f} N",
             f"At {dense.time[k]:.2f} s they {verb}, more than the {dense.held.name}'s weight of {weight:.0f} N. Such a "
             "force lifts nothing; it appears where it unloads joints, and a person would hardly exert it unasked. "
             "A higher objective.force_weight discourages it.",
@@ -209,9 +206,7 @@ def _starts(dense: Solution) -> Iterator[Finding]:
 
 
 def _data(dense: Solution) -> Iterator[Finding]:
-    person = dense.scenario.human
-    subject = Subject(person.stature, person.mass, "male" if person.sex == "male" else "female")
-    strengths = [item for item in subject_quantities(subject) if item.group == "strength"]
+    strengths = [item for item in subject_quantities(subject_of(dense.scenario.human)) if item.group == "strength"]
     weak = [item for item in strengths if item.source.confidence in ("unverified", "estimate")]
     if weak:
         yield Finding(

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.multibody.human import Subject
 from liftopt.multibody.provenance import Quantity, subject_quantities
 from liftopt.scenario import Scenario, scenario_to_dict
 from liftopt.scenario_schema import describe
+from liftopt.scene import subject_of
 from liftopt.solution import Solution
 from liftopt.viz.anatomy import JointCurve
 
@@ -109,8 +109,7 @@ def _kkt_row(verification: dict[str, Any]) -> dict[str, Any]:
 
 
 def _quantities(scenario: Scenario) -> tuple[Quantity, ...]:
-    person = scenario.human
-    return subject_quantities(Subject(person.stature, person.mass, "male" if person.sex == "male" else "female"))
+    return subject_quantities(subject_of(scenario.human))
 
 
 def _knot_name(name: str, checks: dict[str, Any]) -> str | None:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.dh import rotation_z, translation
-from liftopt.multibody.subject import Subject
+from liftopt.scene import subject_of
 from liftopt.solution import Solution
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
@@ -86,9 +86,8 @@ def body_path(cast: Cast, body: str) -> str:
 def parts_of(cast: Cast) -> list[Part]:
     """Return everything that is drawn of the person, the robot and the object, at zero."""
     scenario = cast.solution.scenario
-    human, robot, table = scenario.human, scenario.robot, scenario.table
+    robot, table = scenario.robot, scenario.table
     world_base = translation(scenario.task.standing_distance, 0.0, robot.base_height) @ rotation_z(np.pi)
-    subject = Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
     name = cast.solution.held.name
     size = (table.depth, table.width, table.height)
     if cast.sawyer is None:
@@ -96,7 +95,7 @@ def parts_of(cast: Cast) -> list[Part]:
     else:
         arm = sawyer_mesh_parts(cast.sawyer, world_base)
     return [
-        *person_parts(subject),
+        *person_parts(subject_of(scenario.human)),
         *arm,
         *gripper_parts(world_base, robot.tool.length),
         Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)),

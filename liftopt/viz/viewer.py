@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from types import FrameType
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.interrupt import interrupts
 from liftopt.viz.viewer_server import FIRST_PORT, PageServer, opened
 
 
@@ -43,8 +41,9 @@ def view(
         raise InputError("--ghost", NO_VALUE, "needs a second result: add --with OTHER")
     if not 0 <= port <= 65535:
         raise InputError("--port", port, "must be from 0 to 65535")
-    with _interrupts_kept():
+    with interrupts() as found:
         page = _page(result, other, ghost, sawyer)
+        found.check()  # trimesh swallows one while it tries its imports
     if html is not None:
         _write(Path(html), page)
         say(f"Written to {html}: {len(page.encode('utf-8')) / 1e6:.1f} MB, complete in itself")
@@ -62,28 +61,6 @@ def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str
 
     second = None if other is None else load_result(other)
     return playback_page(load_result(result), second, ghost=ghost, sawyer=sawyer)
-
-
-@contextmanager
-def _interrupts_kept() -> Iterator[None]:
-    """Interrupt after the block if something inside swallowed it, as trimesh does while it tries its imports."""
-    handler = signal.getsignal(signal.SIGINT)
-    if handler is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    noted: list[int] = []
-
-    def note(number: int, frame: FrameType | None) -> None:
-        noted.append(number)
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, note)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
-    if noted:
-        raise KeyboardInterrupt
 
 
 def _write(file: Path, page: str) -> None:

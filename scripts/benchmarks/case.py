@@ -11,6 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
+from liftopt.collocation.guess import blend
+from liftopt.collocation.postures import Posture
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -45,14 +47,11 @@ class Case:
         spline = RestToRestSpline(intervals)
         team = Team.of(agents_of(scenario), object_of(scenario), print)
         problem = Problem(team, task_of(scenario), spline.mesh())
-        control, force = (
-            first + (last - first) * (10 * s**3 - 15 * s**4 + 6 * s**5)[:, None]
-            for first, last, s in (
-                (np.array(ends.first), np.array(ends.last), problem.mesh.control_phase),
-                (np.array(ends.first_force), np.array(ends.last_force), problem.mesh.phase),
-            )
+        first, last = (
+            Posture(np.array(coordinates), np.array(force), 0.0)
+            for coordinates, force in ((ends.first, ends.first_force), (ends.last, ends.last_force))
         )
-        return Case(scenario, spline, problem, problem.pack(control, force))
+        return Case(scenario, spline, problem, blend(problem, first, last))
 
     def solver(self, name: str) -> Solver:
         """Return a new solver for the problem, set up as ``liftopt solve`` does."""

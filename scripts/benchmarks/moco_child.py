@@ -13,7 +13,7 @@ import numpy as np
 import opensim as osim
 from scipy.spatial.transform import Rotation
 
-OBJECTIVE_SCALING = 0.1  # as for our solvers
+OBJECTIVE_SCALING = 0.1  # as for banded
 LIGHTEST = 1e-6  # [kg], [kg m^2]
 
 

@@ -29,7 +29,7 @@ OPTIONS = {
     "Major iterations limit": 5000,
     "Iterations limit": 500000,
 }
-OBJECTIVE_SCALING = 0.1  # as for our solvers
+OBJECTIVE_SCALING = 0.1  # as for banded
 
 
 @dataclass(frozen=True)

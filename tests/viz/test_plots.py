@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 
 from liftopt.errors import InputError
 from liftopt.multibody.range_of_motion import RANGES
+from liftopt.summary import shares
+from liftopt.viz import FORMATS
 from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
-from liftopt.viz.plots import FORMATS, PLOTS, drawn, rendered, write_plots
+from liftopt.viz.plots import PLOTS, drawn, rendered, write_plots
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_forces import shares
 from liftopt.viz.plots_style import LINES
 
 BEGINS = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
