@@ -12,18 +12,19 @@ import numpy.typing as npt
 
 from liftopt import result_writer
 from liftopt.accuracy import Accuracy
-from liftopt.collocation.guess import Start, blend, naive_start, posture_starts
+from liftopt.collocation.guess import Start, blend, naive_start, repertoire
 from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer
 from liftopt.diagnosis import find
-from liftopt.multistart import solve_all
+from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
 from liftopt.reasons import Obstacle
 from liftopt.refinement import FINEST, SURE, finer, sharpened
 from liftopt.remedies import Remedies
 from liftopt.scenario import Scenario
+from liftopt.scouting import scout
 from liftopt.solution import Solution, StartRecord
 from liftopt.verify import CLOSURE_BETWEEN_KNOTS
 from liftopt.workshop import Workshop
@@ -33,7 +34,7 @@ Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.7
 WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
-GIVEN_UP = {BEATEN: "given up: nothing better than the first start in sight"}
+GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}
 
 
 def lift(
@@ -76,6 +77,7 @@ class Search:
         self.notes: list[str] = []
         self.records: list[StartRecord] = []
         self.plans: list[Plan] = []  # of the latest mesh, the best first
+        self.origins: dict[str, Plan] = {}  # on the mesh before, by the name of the plan that came of it
         self.accuracy: Accuracy | None = None
         self._on(spline)
         self.postures = workshop.postures(self.problem, say)
@@ -104,13 +106,20 @@ class Search:
         """Solve from all starts and return the best verified plan, or the best iterate and why it is none."""
         options = self.scenario.solver
         until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
-        count, seed, postures = max(1, options.starts - 1), options.seed, self.postures
-        starts = posture_starts(self.problem, count, seed, until, self.say, postures)
-        if not starts or too_fast(self.problem):
+        found = repertoire(
+            self.problem, max(options.starts, options.tries), options.seed, until, self.say, self.postures
+        )
+        if found is None or too_fast(self.problem):
             nearest, obstacles = self._nearest()
             if obstacles:
                 return self._hindered(nearest, obstacles)
             starts = [nearest]
+        else:
+            self.prepared = time.monotonic()
+            optima = scout(self, found)
+            if optima and (best := finer(self, optima, self.spline.intervals)) is not None:
+                return best
+            starts = found.starts(self.problem, options.starts)
         self.prepared = time.monotonic()
         return self._solved([*starts, naive_start(self.problem)][: options.starts])
 
@@ -118,7 +127,7 @@ class Search:
         """Return the plan that comes of another one on twice its intervals."""
         self._on(RestToRestSpline(2 * plan.spline.intervals))
         start = transfer(plan.problem, plan.spline, plan.result.x, self.problem, self.spline)
-        return finer(self, [plan]) or self._solved([Start("refined", start)])
+        return finer(self, [plan], self.spline.intervals) or self._solved([Start("refined", start)])
 
     def sharpened(self, plan: Plan) -> Plan:
         """Return the plan on a mesh as fine as the scenario asks for, and find out how accurate it is."""
@@ -151,7 +160,8 @@ class Search:
     def _solved(self, starts: list[Start]) -> Plan:
         """Return the best verified plan of all starts; IPOPT takes over where the solver of the scenario has none."""
         name, first = self.scenario.solver.name, len(self.records)
-        best = self._pick(starts, self._solve(self.solvers, starts))
+        results = self._solve(self.solvers, starts)
+        best = self._pick(*self._followed(starts, results) if len(starts) > 1 else (starts, results))
         if best.solved or best.refinable:
             return best
         best = self._eased(best, starts)
@@ -171,10 +181,24 @@ class Search:
             self.say(f"solving on {self.spline.intervals} intervals: {start.name}{which}")
             result = next(solved)
             results.append(result)
-            status = "converged" if result.converged else GIVEN_UP.get(result.status, result.status)
-            status += before[i] if before else ""
-            self.records.append(StartRecord(start.name, status, result.objective, result.iterations, result.seconds))
+            self._record(start, result, before[i] if before else "")
         return results
+
+    def _followed(self, starts: list[Start], results: list[SolverResult]) -> tuple[list[Start], list[SolverResult]]:
+        """Return starts and results with those that come of them."""
+        starts, results = list(starts), list(results)
+        for start, result in follow_up(self.solvers[0], tuple(starts), tuple(results), self.deadline, self.problem):
+            self.say(f"solved on {self.spline.intervals} intervals: {start.name}")
+            self._record(start, result)
+            starts.append(start)
+            results.append(result)
+        return starts, results
+
+    def _record(self, start: Start, result: SolverResult, after: str = "") -> None:
+        status = "converged" if result.converged else GIVEN_UP.get(result.status, result.status)
+        self.records.append(
+            StartRecord(start.name, status + after, result.objective, result.iterations, result.seconds)
+        )
 
     def _eased(self, best: Plan, starts: list[Start]) -> Plan:
         """Solve from the motion that breaks least, or return it with what it breaks."""
@@ -188,11 +212,10 @@ class Search:
         if finding.reasons:
             return self._hindered(eased, list(finding.reasons)) if finding.sure else best
         result = self.solvers[0].solve(eased.x, deadline=self.end, problem=self.problem)
-        status = "converged" if result.converged else result.status
         plan = self._plan(eased, result)
         if not (plan.solved or plan.refinable):
             return best
-        self.records.append(StartRecord(eased.name, status, result.objective, result.iterations, result.seconds))
+        self._record(eased, result)
         return plan
 
     def _pick(self, starts: list[Start], results: list[SolverResult]) -> Plan:

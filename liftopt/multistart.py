@@ -1,4 +1,4 @@
-"""Many starts of one problem, one after the other or several at a time."""
+"""Many starts of one problem, one after the other or several at a time, and those that come of their results."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import SimpleQueue
 
-from liftopt.collocation.guess import Start
+from liftopt.collocation.guess import Start, recombined, turned
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 
@@ -20,9 +20,9 @@ def solve_all(
 ) -> Iterator[SolverResult]:
     """Solve from every start; yield the results in the order of the starts, whatever the number of solvers.
 
-    The optimum of the first, which should be the most promising, is the rival of the others: these may be given up.
-    That of whichever was best so far would save 1 % more iterations, but depend on how many solve at a time. The last,
-    the naive start, has no rival: far from feasible for long, its objective tells nothing.
+    What the first leads to, which should be the most promising, is the rival of the others: these may be given up. That
+    of whichever was best so far would save 1 % more iterations, but depend on how many solve at a time. A start that
+    joins no known moves, the naive one, has no rival: far from feasible for long, its objective tells nothing.
 
     Args:
         solvers: one for each thread; with several they must let go of Python's lock at work.
@@ -37,31 +37,27 @@ def solve_all(
     for solver in solvers:
         idle.put(solver)
 
-    def solve(start: Start, rival: float | None = None) -> SolverResult:
+    def solve(start: Start, leader: SolverResult | None) -> SolverResult:
         now, solver = time.monotonic(), idle.get()
         until = deadline if len(starts) == 1 else now + START_SHARE * (deadline - now)
         try:
-            return solver.solve(start.x, deadline=until, problem=problem, rival=rival)
+            return solver.solve(start.x, deadline=until, problem=problem, rival=leader if start.moves else None)
         finally:
             idle.put(solver)
 
     first, *others = starts
-    last = [others.pop()] if others else []
     if len(solvers) == 1:
-        yield (found := solve(first))
-        rival = _rival(found)
-        yield from (solve(start, rival) for start in others)
-        yield from map(solve, last)
+        yield (found := solve(first, None))
+        for start in others:
+            yield solve(start, found)
         return
 
     def follow(start: Start) -> SolverResult:
-        return solve(start, _rival(leading.result()))
+        return solve(start, leading.result())
 
     with ThreadPoolExecutor(len(solvers), thread_name_prefix="start") as pool:
-        # The last takes about three times as long as the others: it begins with the first.
-        leading = pool.submit(solve, first)
-        lasting = [pool.submit(solve, start) for start in last]
-        futures = [leading, *(pool.submit(follow, start) for start in others), *lasting]
+        leading = pool.submit(solve, first, None)
+        futures = [leading, *(pool.submit(follow, start) for start in others)]
         try:
             for future in futures:
                 yield future.result()
@@ -71,5 +67,34 @@ def solve_all(
                 future.cancel()
 
 
-def _rival(found: SolverResult) -> float | None:
-    return found.objective if found.converged else None
+def follow_up(
+    solver: Solver, starts: Sequence[Start], results: Sequence[SolverResult], deadline: float, problem: Problem
+) -> Iterator[tuple[Start, SolverResult]]:
+    """Solve from the starts that come of others' results, and yield each with its result.
+
+    First from the best moves of all agents together, then from the best optimum with joints turned back that press
+    against a limit. The best optimum so far is the rival.
+
+    Args:
+        solver: for the problem.
+        starts: what was solved from.
+        results: where each of them led.
+        deadline: ``time.monotonic`` value past which no more is tried.
+        problem: what is solved.
+    """
+
+    def together(best: SolverResult) -> Start | None:
+        return recombined(problem, starts, results)
+
+    def back(best: SolverResult) -> Start | None:
+        return turned(problem, best.x)
+
+    optima = [result for result in results if result.converged]
+    for make in (together, back):
+        if not optima or time.monotonic() > deadline:
+            return
+        best = min(optima, key=lambda result: result.objective)
+        if (start := make(best)) is not None:
+            result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
+            optima += [result] if result.converged else []
+            yield start, result

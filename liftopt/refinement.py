@@ -87,7 +87,8 @@ def neighbour(
             continue
         result = solver.solve(start, deadline=deadline, warm=warm, problem=problem)
         if result.converged:
-            return Plan(scenario, problem, spline, f"{plan.start.partition(MESH)[0]}{MESH}{intervals}", result)
+            name, asked = plan.start.partition(MESH)[0], scenario.solver.intervals
+            return Plan(scenario, problem, spline, name if intervals == asked else f"{name}{MESH}{intervals}", result)
         if result.status == STOPPED:
             break
     return None
@@ -143,18 +144,23 @@ def rivals(plans: Sequence[Plan], best: Plan, accuracy: Accuracy) -> list[Plan]:
     return chosen
 
 
-def finer(search: Search, plans: Sequence[Plan]) -> Plan | None:
-    """Return the best verified optimum that others lead to on twice their intervals; None if there is none."""
-    intervals, found = 2 * plans[0].spline.intervals, []
+def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
+    """Return the best verified optimum that others lead to on so many intervals; None if there is none.
+
+    What each optimum came of is kept in ``search.origins``.
+    """
+    found, search.origins = [], {}
     solvers = tuple(dict.fromkeys((search.scenario.solver.name, SURE)))
     for plan in plans:
         search.say(f"solving on {intervals} intervals: {plan.start}")
         if (there := neighbour(search.workshop, plan, intervals, solvers, search.deadline, search.say)) is not None:
             found.append(there)
+            search.origins[there.start] = plan
             result = there.result
             record = StartRecord(there.start, "converged", result.objective, result.iterations, result.seconds)
             search.records.append(record)
     search.plans = sorted(found, key=lambda plan: plan.result.objective)
+    search.say("verifying with Pinocchio")
     return next((plan for plan in search.plans if plan.solved or plan.refinable), None)
 
 
@@ -164,16 +170,20 @@ def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
     The search goes from mesh to mesh, each twice as fine, until ``Refine`` is met, its time is over or the mesh is the
     finest there may be; what came of it is among its notes.
     """
-    accuracy = estimate(search.workshop, plan, search.deadline, search.say)
+    origin = search.origins.get(plan.start)
+    accuracy = compared(plan, origin) if origin is not None else Accuracy.between_knots(plan.verification)
+    if not accuracy.estimated:
+        accuracy = estimate(search.workshop, plan, search.deadline, search.say)
     wanted, coarse = search.scenario.refine, plan.spline.intervals
     if not wanted.on or not (first := unmet(accuracy, wanted)):
         return plan, accuracy
     missing = first
     while missing and 2 * plan.spline.intervals <= FINEST and time.monotonic() < search.deadline:
         candidates = {rival.start.partition(MESH)[0]: rival for rival in rivals(search.plans, plan, accuracy)}
-        best = finer(search, [*candidates.values()])
+        intervals = 2 * plan.spline.intervals
+        best = finer(search, [*candidates.values()], intervals)
         if best is None or not best.solved:
-            search.notes.append(f"no solution was found on {2 * plan.spline.intervals} intervals")
+            search.notes.append(f"no solution was found on {intervals} intervals")
             break
         origin = candidates[best.start.partition(MESH)[0]]
         if origin is not plan:

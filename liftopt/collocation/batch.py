@@ -37,12 +37,16 @@ class Batch:
 
     def objective(self, x: Array) -> Array:
         """Return the objective (B,) at unknowns ``x`` (B, n_x)."""
-        weights, f = self.problem.mesh.weights, np.zeros(len(x))
+        return np.asarray(self.terms(x).sum(axis=0))
+
+    def terms(self, x: Array) -> Array:
+        """Return what each agent, and then the object, adds to the objective (parts, B) at unknowns ``x`` (B, n_x)."""
+        weights, terms = self.problem.mesh.weights, []
         for i, (y, c) in enumerate(zip(self._knots(x), self._outputs(x), strict=True)):
             c_weight, y_weight = self.problem.weights(i)
             squares = c[:, : len(c_weight)] ** 2 @ c_weight + y**2 @ y_weight
-            f += squares.reshape(len(x), -1) @ weights
-        return f
+            terms.append(squares.reshape(len(x), -1) @ weights)
+        return np.array(terms)
 
     def rows(self, x: Array) -> Array:
         """Return the rows of g (B, n_rows) at unknowns ``x`` (B, n_x)."""

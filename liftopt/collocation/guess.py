@@ -1,41 +1,35 @@
-"""Where the solver starts: the paper's naive guess and pairs of static postures joined by a smooth motion.
+"""Where the solver starts: pairs of static postures joined by a smooth motion, and the paper's naive guess.
 
 Random seeds spread over the ranges of motion find different arm configurations that hold the object at the start;
-each leads to one at the end, and that back to another at the start. All pairs are ranked by the objective of the
-motion between them, the torques they take and whether the joints are fast enough.
+each leads to one at the end, and that back to another at the start. Every agent's moves between them are ranked apart
+(``moves.py``). The first start joins the best move of each; the others each have another move of one agent, the agents
+taking turns. What they lead to tells which moves to combine (``recombined``).
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.batch import Batch
-from liftopt.collocation.layout import OBJECT_SIZE
+from liftopt.collocation.moves import Move, blend_all, find_moves
 from liftopt.collocation.postures import Posture, PostureSolver, distinct, seed_coordinates
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.task import LiftTask
+from liftopt.collocation.solvers.result import SolverResult
 
 Array = npt.NDArray[np.float64]
-# Peak speed of the quintic blend over its mean speed.
-QUINTIC_PEAK = 1.875
-# Holding still at each end for half the time, halved again: as much as the objective of the blend on average.
-STATIC_WEIGHT = 0.25
 # Postures nearer than this in every joint [rad] lead to the same ones.
 SAME = 0.03
-# Pairs that share a posture to this [rad], or take the same torques to this share, mostly lead to the same optimum.
-DIFFERENT, SAME_COST = 0.3, 0.01
-# Seeds tried at once, and rounds of them after which an end that no posture was found for is given up.
+# Seeds tried at once, at least, and rounds of them after which an end that no posture was found for is given up. There
+# are as many seeds as starts: 24 starts missed the best optimum of 8 of 40 varied lifts with 16 seeds, of 5 with 32.
 SEEDS, ROUNDS = 16, 3
-TOO_FAST_WEIGHT = 1e3
-# A blend along which a hand turns too far on the object joins arm configurations that seldom meet.
-TURNED_WEIGHT = 1e4
 NAIVE_FORCE = 10.0
+# A joint that is at a limit for this share of the time, to this [rad], is pressed against it; a full turn may miss the
+# other end of its range by so much [rad].
+PRESSED_SHARE, PRESSED, MISSED = 0.2, 0.01, 0.6
 
 
 @dataclass(frozen=True)
@@ -45,10 +39,12 @@ class Start:
     Attributes:
         name: ``"naive"`` or ``"posture pair 1"``, ...
         x: unknowns of the problem it was made for.
+        moves: which of its moves each agent makes; empty where that is not known.
     """
 
     name: str
     x: Array
+    moves: tuple[int, ...] = ()
 
 
 def naive_start(problem: Problem) -> Start:
@@ -57,19 +53,47 @@ def naive_start(problem: Problem) -> Start:
     return Start("naive", problem.pack(np.zeros(layout.control.shape), np.full(layout.force.shape, NAIVE_FORCE)))
 
 
-def posture_starts(
+@dataclass(frozen=True)
+class Repertoire:
+    """Postures at both ends of a lift and what each agent may do between them, the most promising first.
+
+    Attributes:
+        first, last: postures at the start and at the end, at least one each.
+        moves: of each agent.
+    """
+
+    first: tuple[Posture, ...]
+    last: tuple[Posture, ...]
+    moves: tuple[tuple[Move, ...], ...]
+
+    def starts(self, problem: Problem, count: int) -> list[Start]:
+        """Return up to ``count`` starts of the lift, on any mesh, the most promising first."""
+        chosen = combinations([len(moves) for moves in self.moves], count)
+        return [
+            Start(f"posture pair {i + 1}", blend(problem, *self._joined(problem, moves)), moves)
+            for i, moves in enumerate(chosen)
+        ]
+
+    def _joined(self, problem: Problem, chosen: tuple[int, ...]) -> tuple[Posture, Posture]:
+        """Return the ends of a combination of moves: the object and the forces are means of the agents'."""
+        moves = [self.moves[agent][move] for agent, move in enumerate(chosen)]
+        first, last = [self.first[move.first] for move in moves], [self.last[move.last] for move in moves]
+        return _together(problem, first), _together(problem, last)
+
+
+def repertoire(
     problem: Problem,
-    count: int,
+    most: int,
     seed: int,
     deadline: float,
     say: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
-) -> list[Start]:
-    """Return up to ``count`` starts from the best posture pairs, best first; fewer if fewer can be found.
+) -> Repertoire | None:
+    """Return what postures allow; None if none was found at one end.
 
     Args:
         problem: the lift.
-        count: how many are wanted.
+        most: moves of one agent.
         seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
         deadline: ``time.monotonic`` value past which the search stops.
         say: hears of progress.
@@ -81,82 +105,108 @@ def posture_starts(
         began = time.monotonic()
         postures = PostureSolver(problem.team, task, say)
         deadline += time.monotonic() - began
-    pairs: list[tuple[Posture, Posture]] = []
+    count = max(SEEDS, most)
     for attempt in range(ROUNDS):
-        if time.monotonic() > deadline or pairs:
+        if time.monotonic() > deadline:
             break
         if say:
-            say(f"postures at both ends, from {SEEDS} seeds" + (" more" if attempt else ""))
-        seeds = [seed_coordinates(problem, task.start, rng if attempt or i else None) for i in range(SEEDS)]
-        pairs = _pairs(postures, task, seeds, deadline)
-    chosen = choose([pairs[i] for i in np.argsort(_promise(problem, pairs), kind="stable")], count)
-    return [Start(f"posture pair {i + 1}", blend(problem, *pair)) for i, pair in enumerate(chosen)]
+            say(f"postures at both ends, from {count} seeds" + (" more" if attempt else ""))
+        seeds = [seed_coordinates(problem, task.start, rng if attempt or i else None) for i in range(count)]
+        first, last = _ends(postures, problem, seeds, deadline)
+        if first and last:
+            return Repertoire(tuple(first), tuple(last), find_moves(problem, postures, first, last, most))
+    return None
 
 
-def _pairs(
-    postures: PostureSolver, task: LiftTask, seeds: list[Array], deadline: float
-) -> list[tuple[Posture, Posture]]:
-    """Return all pairs of the postures found at the start, at the end from these, and at the start from those."""
+def posture_starts(
+    problem: Problem,
+    count: int,
+    seed: int,
+    deadline: float,
+    say: Callable[[str], None] | None = None,
+    postures: PostureSolver | None = None,
+) -> list[Start]:
+    """Return up to ``count`` starts from pairs of postures, the most promising first; see ``repertoire``."""
+    found = repertoire(problem, count, seed, deadline, say, postures)
+    return found.starts(problem, count) if found else []
+
+
+def _ends(
+    postures: PostureSolver, problem: Problem, seeds: list[Array], deadline: float
+) -> tuple[list[Posture], list[Posture]]:
+    """Return postures at the start, also those that lead back from the end, and at the end."""
+    task = problem.task
     first = distinct(postures.search(task.start, seeds, deadline), SAME)
     last = distinct(postures.search(task.end, [p.coordinates for p in first], deadline), SAME)
     again = postures.search(task.start, [p.coordinates for p in last], deadline)
-    return list(product(distinct([*first, *again], SAME), last))
+    return distinct([*first, *again], SAME), last
 
 
-def _promise(problem: Problem, pairs: list[tuple[Posture, Posture]]) -> Array:
-    """Return what each pair seems to lead to: the objective of its blend, its static torques, and what is too fast."""
-    if not pairs:
-        return np.zeros(0)
-    speed = np.concatenate([agent.limits.velocity for agent in problem.team.agents])
-    travel = np.array([np.abs(last.coordinates - first.coordinates)[:-OBJECT_SIZE] for first, last in pairs])
-    excess = np.maximum(0.0, QUINTIC_PEAK * travel / problem.task.duration - speed).sum(axis=1)
-    held = np.array([first.cost + last.cost for first, last in pairs])
-    blends = _blends(problem, pairs)
-    blended = Batch(problem).objective(blends)
-    promise: Array = blended + STATIC_WEIGHT * held + TOO_FAST_WEIGHT * excess
-    turns = [block for block in problem.constraints.blocks if block.name == "grasp_turn"]
-    if turns:
-        rows = np.concatenate([np.arange(block.rows.start, block.rows.stop) for block in turns])
-        missed = np.concatenate([block.lower for block in turns]) - Batch(problem, rows).rows(blends)
-        promise += TURNED_WEIGHT * np.maximum(0.0, missed).mean(axis=1)
-    return promise
+def combinations(sizes: Sequence[int], count: int) -> list[tuple[int, ...]]:
+    """Return up to ``count`` combinations of moves: the first of every agent, then others of one agent at a time.
+
+    The agents take turns, each from its second move to its last, of which there are as many as ``sizes`` says.
+    """
+    best = (0,) * len(sizes)
+    others = [
+        (*best[:agent], move, *best[agent + 1 :])
+        for move in range(1, max(sizes))
+        for agent, size in enumerate(sizes)
+        if move < size
+    ]
+    return [best, *others][:count]
 
 
-def choose(pairs: list[tuple[Posture, Posture]], count: int) -> list[tuple[Posture, Posture]]:
-    """Return the first ``count`` pairs that mostly lead to different optima."""
-    chosen: list[tuple[Posture, Posture]] = []
-    # Pairs that share a posture come after all those that share none.
-    for alike in (lambda one, other: _share(one, other) or _as_heavy(one, other), _as_heavy):
-        for pair in pairs:
-            if len(chosen) < count and not any(alike(pair, other) for other in chosen):
-                chosen.append(pair)
-    return chosen
-
-
-def _share(one: tuple[Posture, Posture], other: tuple[Posture, Posture]) -> bool:
-    return any(np.abs(a.coordinates - b.coordinates).max() < DIFFERENT for a, b in zip(one, other, strict=True))
-
-
-def _as_heavy(one: tuple[Posture, Posture], other: tuple[Posture, Posture]) -> bool:
-    return all(abs(a.cost - b.cost) < SAME_COST * b.cost for a, b in zip(one, other, strict=True))
+def _together(problem: Problem, own: Sequence[Posture]) -> Posture:
+    """Return the posture in which each agent stands as in its ``own``."""
+    coordinates = np.mean([posture.coordinates for posture in own], axis=0)
+    for i, posture in enumerate(own):
+        columns = problem.layout.columns(i)
+        coordinates[columns] = posture.coordinates[columns]
+    force = np.mean([posture.force for posture in own], axis=0)
+    return Posture(coordinates, force, float(np.mean([posture.cost for posture in own])))
 
 
 def blend(problem: Problem, first: Posture, last: Posture) -> Array:
-    """Return unknowns that join two postures by the quintic of minimum jerk, sampled where the control points act."""
-    x: Array = _blends(problem, [(first, last)])[0]
+    """Return unknowns that join two postures by the quintic of minimum jerk."""
+    x: Array = blend_all(problem, [(first, last)])[0]
     return x
 
 
-def _blends(problem: Problem, pairs: list[tuple[Posture, Posture]]) -> Array:
-    """Return the unknowns (B, n_x) of the blend of each pair, within their bounds."""
+def recombined(problem: Problem, starts: Sequence[Start], results: Sequence[SolverResult]) -> Start | None:
+    """Return the start in which every agent makes the move that did best; None if one of the starts is that one."""
+    solved = {start.moves: (result.objective, start) for start, result in zip(starts, results, strict=True)
+              if result.converged and start.moves}  # fmt: skip
+    if starts[0].moves not in solved:
+        return None
+    best, x = starts[0].moves, starts[0].x.copy()
+    chosen, objects = list(best), []
+    for i in range(len(best)):
+        alone = [entry for moves, entry in solved.items() if moves[:i] + moves[i + 1 :] == best[:i] + best[i + 1 :]]
+        _, start = min(alone, key=lambda entry: entry[0])
+        columns = problem.layout.control[:, problem.layout.columns(i)]
+        chosen[i], x[columns] = start.moves[i], start.x[columns]
+        objects.append(start.x)
+    if tuple(chosen) in solved:
+        return None
+    for columns in (problem.layout.control[:, problem.layout.columns(len(best))], problem.layout.force):
+        x[columns] = np.mean([other[columns] for other in objects], axis=0)
+    return Start("best moves together", x, tuple(chosen))
 
-    def join(phase: Array, ends: Array) -> Array:
-        share = (10 * phase**3 - 15 * phase**4 + 6 * phase**5)[:, None]
-        return np.asarray(ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * share)
 
-    x = np.empty((len(pairs), problem.layout.n_x))
-    coordinates = np.array([[posture.coordinates for posture in pair] for pair in pairs])
-    forces = np.array([[posture.force for posture in pair] for pair in pairs])
-    x[:, problem.layout.control] = join(problem.mesh.control_phase, coordinates)
-    x[:, problem.layout.force] = join(problem.mesh.phase, forces)
-    return np.asarray(np.clip(x, *problem.bounds()))
+def turned(problem: Problem, x: Array) -> Start | None:
+    """Return an optimum with the joints that press against a limit a full turn back; None where none can do that.
+
+    At the other end of its range such a joint has the same posture, or nearly, and room to move on.
+    """
+    y, any_turned = x.copy(), False
+    for i, agent in enumerate(problem.team.agents):
+        columns = problem.layout.control[:, problem.layout.columns(i)]
+        limits = agent.limits
+        for j, (lower, upper) in enumerate(zip(limits.q_lower, limits.q_upper, strict=True)):
+            q = x[columns[:, j]]
+            for sign, pressed in ((-1.0, q > upper - PRESSED), (1.0, q < lower + PRESSED)):
+                if upper - lower > 2 * np.pi - MISSED and pressed.mean() > PRESSED_SHARE:
+                    y[columns[:, j]] = np.clip(q + sign * 2 * np.pi, lower, upper)
+                    any_turned = True
+    return Start("a full turn back", y) if any_turned else None

@@ -26,7 +26,7 @@ from liftopt.errors import SolverError
 Array = npt.NDArray[np.float64]
 POSTURE_WEIGHT = 1e-2
 # Seeds spread by this share of each joint's range about the comfortable posture.
-SPREAD = 0.25
+SPREAD = 0.35
 # A seed that inverse kinematics has not closed by then seldom closes.
 CLOSING_ITERATIONS = 20
 MAX_ITERATIONS = 100

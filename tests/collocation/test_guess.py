@@ -10,9 +10,20 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation import postures
-from liftopt.collocation.guess import Start, choose, naive_start, posture_starts
-from liftopt.collocation.postures import Posture, PostureSolver, seed_coordinates
+from liftopt.collocation.guess import (
+    PRESSED,
+    Start,
+    combinations,
+    naive_start,
+    posture_starts,
+    recombined,
+    repertoire,
+    turned,
+)
+from liftopt.collocation.moves import SAME, apart
+from liftopt.collocation.postures import PostureSolver, seed_coordinates
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
@@ -99,33 +110,102 @@ def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
     np.testing.assert_allclose(other.cost, found.cost, rtol=1e-4)
 
 
-def test_chosen_pairs_share_no_posture_and_no_torques_while_others_are_left() -> None:
-    """Made-up postures of one joint: order of promise, then pairs that share an end, never the same torques."""
-    a, b, c, d = (Posture(np.array([float(i)]), np.zeros(3), 100.0 * (i + 1)) for i in range(4))
-    like_a = Posture(np.array([9.0]), np.zeros(3), 100.5)
-    pairs = [(a, b), (like_a, b), (a, c), (c, d)]
-    assert choose(pairs, 1) == [(a, b)]
-    assert choose(pairs, 2) == [(a, b), (c, d)]
-    assert choose(pairs, 4) == [(a, b), (c, d), (a, c)]
+def test_agents_change_their_moves_in_turn() -> None:
+    """By hand: the first of each, then one agent's second, the other's second, and so on until one has no more."""
+    assert combinations([3, 2], 10) == [(0, 0), (1, 0), (0, 1), (2, 0)]
+    assert combinations([3, 2], 2) == [(0, 0), (1, 0)]
+    assert combinations([1], 5) == [(0,)]
 
 
-def test_starts_join_the_postures_at_rest(starts: list[Start], small_lift: Problem) -> None:
-    """Within bounds, at the asked poses, closed at both ends by Pinocchio, and in range of the asked number."""
+def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift: Problem) -> None:
+    """Pinocchio's forward kinematics: no two moves begin and end with all links within a few centimetres."""
+    found = repertoire(small_lift, 8, 0, time.monotonic() + 120.0)
+    assert found is not None
+    for i, (agent, moves) in enumerate(zip(small_lift.team.agents, found.moves, strict=True)):
+        assert 1 <= len(moves) <= 8
+        assert [move.promise for move in moves] == sorted(move.promise for move in moves)
+        columns, model = small_lift.layout.columns(i), agent.reduced()
+        data = model.createData()
+
+        def places(q: np.ndarray, model: pin.Model = model, data: pin.Data = data) -> np.ndarray:
+            pin.forwardKinematics(model, data, q)
+            joints = range(1, model.njoints)
+            return np.array([data.oMi[j].act(model.inertias[j].lever) for j in joints])
+
+        ends = [
+            np.array([places(p[getattr(move, which)].coordinates[columns]) for move in moves])
+            for p, which in ((found.first, "first"), (found.last, "last"))
+        ]
+        for n in range(len(moves)):
+            for m in range(n):
+                distance = max(np.linalg.norm(end[n] - end[m], axis=1).max() for end in ends)
+                assert distance > SAME
+
+
+def test_turning_a_joint_about_its_own_axis_moves_nothing(team: Team) -> None:
+    """Sawyer's last joint carries what is on its axis, so postures that differ in it alone are the same."""
+    robot = team.agents[1]
+    q = np.tile(robot.posture, (2, 1))
+    q[1, -1] += 1.0
+    assert apart(robot, q).max() < 0.01
+    q[1, 0] += 1.0
+    between = apart(robot, q)
+    assert between[0, 1] == between[1, 0] > SAME
+
+
+def _result(start: Start, objective: float, converged: bool = True) -> SolverResult:
+    return SolverResult(start.x, Multipliers(start.x, start.x), objective, 1, converged, "", 0.0, 0.0)
+
+
+def test_best_moves_of_all_agents_come_together(small_lift: Problem) -> None:
+    """Made-up results: each agent's control points are those of the start in which its move did best."""
+    n = small_lift.layout.n_x
+    starts = [Start(str(i), np.full(n, float(i)), moves) for i, moves in enumerate([(0, 0), (1, 0), (0, 1), (2, 0)])]
+    results = [_result(start, objective) for start, objective in zip(starts, (10.0, 9.0, 8.0, 12.0), strict=True)]
+    start = recombined(small_lift, starts, results)
+    assert start is not None and start.moves == (1, 1)
+    control, force = small_lift.unpack(start.x)
+    columns = [small_lift.layout.columns(i) for i in range(3)]
+    assert (control[:, columns[0]] == 1.0).all() and (control[:, columns[1]] == 2.0).all()
+    assert (control[:, columns[2]] == 1.5).all() and (force == 1.5).all()
+    # Where one agent alone did better, or the first start led nowhere, there is nothing to combine.
+    assert recombined(small_lift, starts[:2], results[:2]) is None
+    assert recombined(small_lift, starts, [_result(starts[0], 10.0, False), *results[1:]]) is None
+
+
+def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) -> None:
+    """Sawyer's fifth joint has 5.96 rad: at its upper limit, a full turn back is its lower limit, to 0.33 rad."""
+    robot, layout = small_lift.team.agents[1], small_lift.layout
+    x = naive_start(small_lift).x
+    assert turned(small_lift, x) is None
+    column = layout.control[:, layout.columns(1)][:, 4]
+    x[column] = robot.limits.q_upper[4]
+    start = turned(small_lift, x)
+    assert start is not None
+    np.testing.assert_allclose(start.x[column], robot.limits.q_lower[4])
+    others = np.setdiff1d(np.arange(len(x)), column)
+    np.testing.assert_array_equal(start.x[others], x[others])
+    x[column] = robot.limits.q_upper[4] - 2 * PRESSED
+    assert turned(small_lift, x) is None
+
+
+def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[Start], small_lift: Problem) -> None:
+    """Within bounds; each agent stands as in its own postures, the object as it does there in the mean."""
     assert 1 <= len(starts) <= 2
     assert [start.name for start in starts] == [f"posture pair {i + 1}" for i in range(len(starts))]
+    found = repertoire(small_lift, 2, 0, time.monotonic() + 120.0)
+    assert found is not None
     lower, upper = small_lift.bounds()
     for start in starts:
         assert (start.x >= lower).all() and (start.x <= upper).all()
         control, _ = small_lift.unpack(start.x)
-        for row in (0, -1):
-            for i, agent in enumerate(small_lift.team.agents):
-                model, held = agent.reduced(), small_lift.team.held
-                data, at = model.createData(), control[row, small_lift.layout.columns(2)]
-                pin.framesForwardKinematics(model, data, control[row, small_lift.layout.columns(i)])
-                lever = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
-                turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", at[3:], strict=True)]
-                point = data.oMf[model.getFrameId(agent.grasp_frame)].translation
-                np.testing.assert_allclose(point, at[:3] + turn[0] @ turn[1] @ turn[2] @ lever, atol=1e-6)
+        moves = [found.moves[i][move] for i, move in enumerate(start.moves)]
+        for row, own in ((0, [found.first[m.first] for m in moves]), (-1, [found.last[m.last] for m in moves])):
+            for i, posture in enumerate(own):
+                columns = small_lift.layout.columns(i)
+                np.testing.assert_allclose(control[row, columns], posture.coordinates[columns], atol=1e-9)
+            mean = np.mean([posture.coordinates[-6:] for posture in own], axis=0)
+            np.testing.assert_allclose(control[row, -6:], mean, atol=1e-9)
 
 
 def test_equal_seeds_give_equal_starts(small_lift: Problem, starts: list[Start]) -> None:

@@ -31,11 +31,16 @@ Array = npt.NDArray[np.float64]
 # The verification recomputes the same error by Pinocchio, whose rounding differs: what converged must stay so there.
 SAFETY = 0.9
 SOLVED = "Solve_Succeeded"
-# Of the barrier parameters tried (0.001 to 1) it takes the fewest iterations from posture pairs and naive starts.
-COLD = dict(mu=1.0, push=1e-2)
+# Of the barrier parameters tried (0.001 to 10) it takes the fewest iterations from posture pairs and naive starts on 20
+# intervals; on finer meshes, which have more bounds, a smaller one does: of 7 lifts 32 iterations instead of 47 on 80.
+COLD = dict(push=1e-2)
+COLD_MU, COLD_INTERVALS = 1.0, 20
 # A warm start is near the solution: this barrier parameter and this share of the room to the bounds keep it there, and
 # whole Newton steps to begin with find the bounds that become active.
 WARM = dict(mu=1e-5, push=1e-4, predictions=2)
+# Iterations after which a start gives up that has a rival: so many, or so many times what the rival took; more where
+# that has not converged. Of 544 starts of widely varied lifts that converged, half took 43 and 90 % took 112.
+PATIENCE, PATIENCE_SHARE, LONGER = 60, 2, 100
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,7 @@ class Banded:
         self.problem, self.options = problem, options or BandedOptions()
         self._parameters = problem.parameters.copy()
         self._current: Problem | None = None
+        self._cold_mu = COLD_MU * min(1.0, COLD_INTERVALS / max(1, len(problem.mesh.phase) - 1)) ** 2
         self._kernels = wide_kernels(problem, say)
         if self._kernels:
             self._nlp = kernel_nlp(_liftopt_banded, problem, self._kernels)
@@ -89,12 +95,14 @@ class Banded:
         deadline: float,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
-        rival: float | None = None,
+        rival: SolverResult | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``."""
         problem = problem or self.problem
         self._set_parameters(problem)
-        cold: dict[str, Any] = COLD if rival is None else COLD | {"rival": rival}
+        cold: dict[str, Any] = COLD | {"mu": self._cold_mu}
+        if rival is not None:
+            cold |= {"rival": rival.objective if rival.converged else np.inf, "max_iterations": self._patience(rival)}
         found = self._run(x0, problem, deadline, cold if warm is None else WARM | {"warm": (warm.x, warm.g)})
         if warm is not None and found["status"] not in (SOLVED, STOPPED):
             # What was a neighbour in the data need not be one in its solution.
@@ -113,6 +121,11 @@ class Banded:
             evaluation_seconds=found["evaluation_seconds"],
         )
 
+    def _patience(self, rival: SolverResult) -> int:
+        """Return how many iterations a start gets that has a rival."""
+        most = max(PATIENCE, PATIENCE_SHARE * rival.iterations) if rival.converged else LONGER
+        return min(most, self.options.max_iterations)
+
     def _run(self, x0: Array, problem: Problem, deadline: float, arguments: dict[str, Any]) -> dict[str, Any]:
         lower, upper = problem.bounds()
         constraints, options = problem.constraints, self.options
@@ -124,9 +137,8 @@ class Banded:
             x0=x0,
             tolerance=SAFETY * options.tolerance,
             objective_scaling=options.objective_scaling,
-            max_iterations=options.max_iterations,
             seconds=deadline - time.monotonic(),
-            **arguments,
+            **({"max_iterations": options.max_iterations} | arguments),
         )
         return found
 

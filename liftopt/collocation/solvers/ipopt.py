@@ -81,7 +81,7 @@ class Ipopt:
         deadline: float,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
-        rival: float | None = None,
+        rival: SolverResult | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration; a rival changes nothing.
 

@@ -65,7 +65,7 @@ class Solver(Protocol):
         deadline: float,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
-        rival: float | None = None,
+        rival: SolverResult | None = None,
     ) -> SolverResult:
         """Solve from ``x0``.
 
@@ -74,7 +74,8 @@ class Solver(Protocol):
             deadline: ``time.monotonic`` value past which the solver stops.
             warm: multipliers of a neighbouring solution to start from.
             problem: another problem of the same structure, for its bounds and parameters; None: the bound one.
-            rival: objective of another solution. Where nothing lower is in sight the solver may give up (``BEATEN``).
+            rival: where another start led. Where nothing lower is in sight the solver may give up (``BEATEN``), or
+                where it takes much longer.
 
         Raises:
             SolverError: the solver itself cannot run.

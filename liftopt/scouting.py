@@ -1,0 +1,68 @@
+"""Scouting: many starts on half the intervals, of which the best optima are taken to the mesh that was asked for.
+
+The coarse mesh costs half as much a solve, and an optimum of it is a warm start on the fine one. It tells good motions
+from bad ones: of 24 starts of each of 53 widely varied lifts, the four with the best optima on eight intervals led to
+within 5 % of the best of all 24 in 50 lifts, the four most promising ones (``moves.py``) in 32.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from liftopt.collocation.guess import Repertoire
+from liftopt.collocation.solvers.result import Solver
+from liftopt.collocation.spline import FEWEST, RestToRestSpline
+from liftopt.errors import SolverError
+from liftopt.multistart import follow_up, solve_all
+from liftopt.plan import Plan
+from liftopt.refinement import MESH, QUICKEST, SAME_OPTIMUM
+
+if TYPE_CHECKING:
+    from liftopt.lift import Search
+
+# Of the time that is left for solving.
+SCOUTING_SHARE = 0.5
+# Optima further above the best one than this are not worth a solve on the fine mesh.
+PROMISING = 1.2
+
+
+def scout(search: Search, found: Repertoire) -> list[Plan]:
+    """Return the optima on half the intervals that may lead to the best one, the best first; none if none was found.
+
+    Args:
+        search: on the mesh that was asked for.
+        found: where to start from.
+    """
+    scenario, intervals = search.scenario, (search.spline.intervals + 1) // 2
+    if intervals < FEWEST or not scenario.solver.tries:
+        return []
+    spline = RestToRestSpline(intervals)
+    problem = search.workshop.problem(scenario, spline, search.say)
+    starts = found.starts(problem, scenario.solver.tries)
+    search.say(f"trying {len(starts)} starts on {intervals} intervals")
+    try:
+        solvers: list[Solver] = [
+            search.workshop.solver(problem, scenario, QUICKEST[0], search.say, i)
+            for i in range(min(scenario.solver.workers, len(starts)))
+        ]
+    except SolverError:  # an extension that is missing: the search goes on without
+        return []
+    until = time.monotonic() + SCOUTING_SHARE * (search.deadline - time.monotonic())
+    results = list(solve_all(solvers, starts, until, problem))
+    tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
+    optima: list[Plan] = []
+    for start, result in sorted(tried, key=lambda pair: pair[1].objective):
+        if result.converged and not any(_same(result.objective, plan.result.objective) for plan in optima):
+            optima.append(Plan(scenario, problem, spline, f"{start.name}{MESH}{intervals}", result))
+    near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
+    chosen = near[: scenario.solver.starts]
+    search.notes.append(
+        f"{len(tried)} starts on {intervals} intervals led to {len(optima)} optima; "
+        f"the best {len(chosen)} were taken to {search.spline.intervals}"
+    )
+    return chosen
+
+
+def _same(one: float, other: float) -> bool:
+    return abs(one - other) <= SAME_OPTIMUM * other
