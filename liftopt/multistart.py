@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from queue import SimpleQueue
 
 from liftopt.collocation.guess import Start, recombined, turned
@@ -16,7 +17,11 @@ START_SHARE = 0.5
 
 
 def solve_all(
-    solvers: Sequence[Solver], starts: Sequence[Start], deadline: float, problem: Problem | None = None
+    solvers: Sequence[Solver],
+    starts: Sequence[Start],
+    deadline: float,
+    problem: Problem | None = None,
+    margin: float = 1.0,
 ) -> Iterator[SolverResult]:
     """Solve from every start; yield the results in the order of the starts, whatever the number of solvers.
 
@@ -29,6 +34,7 @@ def solve_all(
         starts: where to start.
         deadline: ``time.monotonic`` value past which solvers stop.
         problem: what is solved; None: what each solver was built for.
+        margin: how many times the rival's objective is still of interest.
 
     Raises:
         SolverError: a solver cannot run at all.
@@ -41,7 +47,8 @@ def solve_all(
         now, solver = time.monotonic(), idle.get()
         until = deadline if len(starts) == 1 else now + START_SHARE * (deadline - now)
         try:
-            return solver.solve(start.x, deadline=until, problem=problem, rival=leader if start.moves else None)
+            rival = replace(leader, objective=margin * leader.objective) if leader and start.moves else None
+            return solver.solve(start.x, deadline=until, problem=problem, rival=rival)
         finally:
             idle.put(solver)
 

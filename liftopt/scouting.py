@@ -49,7 +49,7 @@ def scout(search: Search, found: Repertoire) -> list[Plan]:
     except SolverError:  # an extension that is missing: the search goes on without
         return []
     until = time.monotonic() + SCOUTING_SHARE * (search.deadline - time.monotonic())
-    results = list(solve_all(solvers, starts, until, problem))
+    results = list(solve_all(solvers, starts, until, problem, PROMISING))
     tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
     optima: list[Plan] = []
     for start, result in sorted(tried, key=lambda pair: pair[1].objective):
