@@ -34,6 +34,7 @@ Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.7
 WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
+WIDER = 8  # times as many starts are tried before a lift that has postures at both ends counts as impossible
 GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}
 
 
@@ -106,9 +107,8 @@ class Search:
         """Solve from all starts and return the best verified plan, or the best iterate and why it is none."""
         options = self.scenario.solver
         until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
-        found = repertoire(
-            self.problem, max(options.starts, options.tries), options.seed, until, self.say, self.postures
-        )
+        most = max(options.starts, options.tries)
+        found = repertoire(self.problem, most, options.seed, until, self.say, self.postures)
         if found is None or too_fast(self.problem):
             nearest, obstacles = self._nearest()
             if obstacles:
@@ -116,12 +116,28 @@ class Search:
             starts = [nearest]
         else:
             self.prepared = time.monotonic()
-            optima = scout(self, found)
+            optima = scout(self, found, options.tries)
             if optima and (best := finer(self, optima, self.spline.intervals)) is not None:
                 return best
             starts = found.starts(self.problem, options.starts)
         self.prepared = time.monotonic()
-        return self._solved([*starts, naive_start(self.problem)][: options.starts])
+        best = self._solved([*starts, naive_start(self.problem)][: options.starts])
+        return best if best.solved or best.refinable or found is None else self._wider() or best
+
+    def _wider(self) -> Plan | None:
+        """Return the best verified plan of many more starts; None if none is found in time.
+
+        That a lift is not possible has no proof where postures hold the object at both ends.
+        """
+        tries, seed = WIDER * self.scenario.solver.tries, self.scenario.solver.seed + 1
+        if not tries or time.monotonic() > self.deadline:
+            return None
+        found = repertoire(self.problem, tries, seed, self.deadline, self.say, self.postures)
+        optima = scout(self, found, tries) if found else []
+        best = finer(self, optima, self.spline.intervals) if optima else None
+        if best is not None:
+            self.obstacles, self.nearest = (), []
+        return best
 
     def refine(self, plan: Plan) -> Plan:
         """Return the plan that comes of another one on twice its intervals."""

@@ -27,19 +27,20 @@ SCOUTING_SHARE = 0.5
 PROMISING = 1.2
 
 
-def scout(search: Search, found: Repertoire) -> list[Plan]:
+def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     """Return the optima on half the intervals that may lead to the best one, the best first; none if none was found.
 
     Args:
         search: on the mesh that was asked for.
         found: where to start from.
+        tries: starts to be tried.
     """
     scenario, intervals = search.scenario, (search.spline.intervals + 1) // 2
-    if intervals < FEWEST or not scenario.solver.tries:
+    if intervals < FEWEST or not tries:
         return []
     spline = RestToRestSpline(intervals)
     problem = search.workshop.problem(scenario, spline, search.say)
-    starts = found.starts(problem, scenario.solver.tries)
+    starts = found.starts(problem, tries)
     search.say(f"trying {len(starts)} starts on {intervals} intervals")
     try:
         solvers: list[Solver] = [

@@ -13,12 +13,15 @@ import pytest
 from scipy.optimize import minimize
 
 from liftopt import remedies
+from liftopt.collocation.guess import Repertoire, Start
 from liftopt.collocation.solvers.banded import Banded
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
-from liftopt.lift import Search, lift
+from liftopt.lift import WIDER, Search, lift
+from liftopt.plan import Plan
 from liftopt.scenario import load_scenario, scenario_to_dict, with_overrides
 from liftopt.scene import robot_of
+from liftopt.scouting import scout
 from liftopt.solution import Solution
 from liftopt.summary import summary_dict
 from liftopt.workshop import Workshop
@@ -144,3 +147,22 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
     assert solution.solved and solution.kept_start == "elastic"
     assert [start.status for start in solution.starts] == ["Line_Search_Failed"] * 2 + ["converged"]
     assert solution.reasons == () == solution.remedies
+
+
+def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first scouts come back with nothing and the starts on the full mesh fail; those after them find the lift."""
+    asked: list[int] = []
+
+    def blind(search: Search, found: Repertoire, tries: int) -> list[Plan]:
+        asked.append(tries)
+        return scout(search, found, tries) if len(asked) > 1 else []
+
+    def fails(self: Search, starts: list[Start]) -> Plan:
+        self.obstacles = _solution(*FAR).reasons
+        return self._hindered(starts[0], list(self.obstacles))
+
+    monkeypatch.setattr("liftopt.lift.scout", blind)
+    monkeypatch.setattr(Search, "_solved", fails)
+    solution = lift(load_scenario("table5", [*BANDED, "solver.tries=2"]), workshop=_workshop())
+    assert asked == [2, 2 * WIDER]
+    assert solution.solved and solution.reasons == () == solution.remedies
