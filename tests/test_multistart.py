@@ -74,13 +74,15 @@ def test_one_start_of_several_may_not_take_all_the_time() -> None:
     np.testing.assert_allclose(np.array(solver.deadlines) - now, [50.0, 50.0, 100.0], atol=1.0)
 
 
-def test_workers_and_a_kept_workshop_change_nothing() -> None:
+@pytest.mark.parametrize("tries", [0, 6])
+def test_workers_and_a_kept_workshop_change_nothing(tries: int) -> None:
     """Bit by bit: one worker, two workers, and a second time with what was kept; some starts are given up."""
-    overrides = ["solver.name=banded", "solver.starts=6", "solver.intervals=16", "solver.tries=0"]
+    overrides = ["solver.name=banded", "solver.starts=6", "solver.intervals=16", f"solver.tries={tries}"]
     one = lift(load_scenario("table5", overrides))
     both, workshop = load_scenario("table5", [*overrides, "solver.workers=2"]), Workshop()
     assert one.solved
-    assert {s.status for s in one.starts} == {"converged", "given up: nothing better than another start in sight"}
+    given_up = "given up: nothing better than another start in sight"
+    assert {s.status for s in one.starts} == {"converged"} | (set() if tries else {given_up})
     for other in (lift(both, workshop=workshop), lift(both, workshop=workshop)):
         assert other.objective == one.objective
         assert [(s.name, s.objective) for s in other.starts] == [(s.name, s.objective) for s in one.starts]

@@ -1,0 +1,56 @@
+"""Scouts: their optima are put to Pinocchio, and must be what the fine mesh is given."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from liftopt.collocation.guess import Repertoire, repertoire
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.errors import SolverError
+from liftopt.lift import Search
+from liftopt.scenario import load_scenario
+from liftopt.scouting import PROMISING, SAME_OPTIMUM, scout
+from liftopt.workshop import Workshop
+
+
+def _search(*overrides: str, intervals: int = 20) -> tuple[Search, Repertoire]:
+    scenario = load_scenario("table5_near", overrides)
+    search = Search(scenario, Workshop(), RestToRestSpline(intervals), lambda line: None)
+    found = repertoire(search.problem, 12, 0, time.monotonic() + 60.0, None, search.postures)
+    assert found is not None
+    return search, found
+
+
+def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() -> None:
+    """Each is first-order optimal by Pinocchio's derivatives."""
+    search, found = _search("solver.starts=3")
+    plans = scout(search, found, 12)
+    assert 1 <= len(plans) <= 3
+    objectives = np.array([plan.result.objective for plan in plans])
+    assert (np.diff(objectives) > SAME_OPTIMUM * objectives[:-1]).all()
+    assert objectives[-1] <= PROMISING * objectives[0]
+    for plan in plans:
+        assert plan.spline.intervals == 10 and plan.start.endswith(", N = 10")
+        assert plan.verification.kkt_error <= 1e-6
+    assert search.notes[-1].endswith(f"the best {len(plans)} were taken to 20")
+
+
+def test_no_scouts_where_half_the_mesh_is_too_coarse_or_none_are_asked_for() -> None:
+    coarse, found = _search(intervals=10)
+    assert scout(coarse, found, 12) == []
+    search, found = _search()
+    assert scout(search, found, 0) == []
+    assert search.notes == []
+
+
+def test_the_search_goes_on_without_scouts_where_their_solver_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    search, found = _search()
+
+    def missing(*_: object) -> None:
+        raise SolverError("not installed")
+
+    monkeypatch.setattr(search.workshop, "solver", missing)
+    assert scout(search, found, 12) == []
