@@ -107,7 +107,8 @@ class Search:
         """Solve from all starts and return the best verified plan, or the best iterate and why it is none."""
         options = self.scenario.solver
         until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
-        most = max(options.starts, options.tries)
+        tries = max(options.starts, options.tries) if options.tries else 0
+        most = tries or options.starts
         found = repertoire(self.problem, most, options.seed, until, self.say, self.postures)
         if found is None or too_fast(self.problem):
             nearest, obstacles = self._nearest()
@@ -116,7 +117,7 @@ class Search:
             starts = [nearest]
         else:
             self.prepared = time.monotonic()
-            optima = scout(self, found, options.tries)
+            optima = scout(self, found, tries)
             if optima and (best := finer(self, optima, self.spline.intervals)) is not None:
                 return best
             starts = found.starts(self.problem, options.starts)
