@@ -32,6 +32,8 @@ TURNED_WEIGHT = 1e4
 # Moves whose links all begin and end nearer to each other than this [m] mostly lead to the same optimum. Angles would
 # not tell: turning the last joint about its own axis moves nothing.
 SAME = 0.06
+# Blends at a time: hundreds of postures make tens of thousands of pairs.
+CHUNK = 512
 
 
 @dataclass(frozen=True)
@@ -61,20 +63,32 @@ def find_moves(
         most: moves of one agent.
     """
     pairs = np.array(list(product(range(len(first)), range(len(last)))))
-    joined = [(first[i], last[j]) for i, j in pairs]
-    blends, still = blend_all(problem, joined), Batch(postures.problem)
-    held = [still.terms(np.array([postures.problem.pack(p.coordinates[None], p.force[None]) for p in ends]))
-            for ends in (first, last)]  # fmt: skip
-    promise = Batch(problem).terms(blends) + STATIC_WEIGHT * (held[0][:, pairs[:, 0]] + held[1][:, pairs[:, 1]])
+    blended, turned = _blended(problem, [(first[i], last[j]) for i, j in pairs])
+    still = Batch(postures.problem)
+    held = [
+        still.terms(np.array([postures.problem.pack(p.coordinates[None], p.force[None]) for p in ends]))
+        for ends in (first, last)
+    ]
+    promise = blended + STATIC_WEIGHT * (held[0][:, pairs[:, 0]] + held[1][:, pairs[:, 1]])
     found = []
     for i, agent in enumerate(problem.team.agents):
         columns = problem.layout.columns(i)
-        ends = [np.array([posture.coordinates[columns] for posture in postures_]) for postures_ in (first, last)]
-        travel = np.abs(ends[1][pairs[:, 1]] - ends[0][pairs[:, 0]])
+        q = [np.array([posture.coordinates[columns] for posture in ends]) for ends in (first, last)]
+        travel = np.abs(q[1][pairs[:, 1]] - q[0][pairs[:, 0]])
         excess = np.maximum(0.0, QUINTIC_PEAK * travel / problem.task.duration - agent.limits.velocity).sum(axis=1)
-        here = promise[i] + TOO_FAST_WEIGHT * excess + TURNED_WEIGHT * _turned(problem, agent, blends)
-        found.append(_different(pairs, here, [apart(agent, q) for q in ends], most))
+        here = promise[i] + TOO_FAST_WEIGHT * excess + TURNED_WEIGHT * turned[i]
+        found.append(_different(pairs, here, [apart(agent, postures_) for postures_ in q], most))
     return tuple(found)
+
+
+def _blended(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> tuple[Array, Array]:
+    """Return what every part adds to the objective of each pair's blend (parts, B), and ``_turned`` (agents, B)."""
+    batch, terms, turned = Batch(problem), [], []
+    for n in range(0, len(pairs), CHUNK):
+        blends = blend_all(problem, pairs[n : n + CHUNK])
+        terms.append(batch.terms(blends))
+        turned.append(np.array([_turned(problem, agent, blends) for agent in problem.team.agents]))
+    return np.hstack(terms), np.hstack(turned)
 
 
 def blend_all(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> Array:
