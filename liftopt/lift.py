@@ -78,7 +78,6 @@ class Search:
         self.notes: list[str] = []
         self.records: list[StartRecord] = []
         self.plans: list[Plan] = []  # of the latest mesh, the best first
-        self.origins: dict[str, Plan] = {}  # on the mesh before, by the name of the plan that came of it
         self.accuracy: Accuracy | None = None
         self._on(spline)
         self.postures = workshop.postures(self.problem, say)
@@ -198,24 +197,21 @@ class Search:
             self.say(f"solving on {self.spline.intervals} intervals: {start.name}{which}")
             result = next(solved)
             results.append(result)
-            self._record(start, result, before[i] if before else "")
+            self.record(start.name, result, before[i] if before else "")
         return results
 
     def _followed(self, starts: list[Start], results: list[SolverResult]) -> tuple[list[Start], list[SolverResult]]:
         """Return starts and results with those that come of them."""
-        starts, results = list(starts), list(results)
-        for start, result in follow_up(self.solvers[0], tuple(starts), tuple(results), self.deadline, self.problem):
-            self.say(f"solved on {self.spline.intervals} intervals: {start.name}")
-            self._record(start, result)
-            starts.append(start)
-            results.append(result)
-        return starts, results
+        self.say(f"solving on {self.spline.intervals} intervals: what comes of these")
+        more = list(follow_up(self.solvers[0], starts, results, self.deadline, self.problem))
+        for start, result in more:
+            self.record(start.name, result)
+        return [*starts, *(start for start, _ in more)], [*results, *(result for _, result in more)]
 
-    def _record(self, start: Start, result: SolverResult, after: str = "") -> None:
-        status = "converged" if result.converged else GIVEN_UP.get(result.status, result.status)
-        self.records.append(
-            StartRecord(start.name, status + after, result.objective, result.iterations, result.seconds)
-        )
+    def record(self, name: str, result: SolverResult, after: str = "") -> None:
+        """Keep where a start led; ``after`` says what was tried before."""
+        status = ("converged" if result.converged else GIVEN_UP.get(result.status, result.status)) + after
+        self.records.append(StartRecord(name, status, result.objective, result.iterations, result.seconds))
 
     def _eased(self, best: Plan, starts: list[Start]) -> Plan:
         """Solve from the motion that breaks least, or return it with what it breaks."""
@@ -232,7 +228,7 @@ class Search:
         plan = self._plan(eased, result)
         if not (plan.solved or plan.refinable):
             return best
-        self._record(eased, result)
+        self.record(eased.name, result)
         return plan
 
     def _pick(self, starts: list[Start], results: list[SolverResult]) -> Plan:

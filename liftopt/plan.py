@@ -33,6 +33,7 @@ class Plan:
         start: name of where the solver started.
         result: where it stopped.
         obstacles: why there cannot be a solution, one line; empty if nothing is known to be in the way.
+        origin: on another mesh, from which it was solved; None if it was not.
     """
 
     scenario: Scenario
@@ -41,6 +42,7 @@ class Plan:
     start: str
     result: SolverResult
     obstacles: str = ""
+    origin: Plan | None = None
 
     @cached_property
     def verification(self) -> Verification:

@@ -27,7 +27,6 @@ from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
 from liftopt.plan import Plan
 from liftopt.scenario import Refine
-from liftopt.solution import StartRecord
 from liftopt.workshop import Workshop
 
 if TYPE_CHECKING:
@@ -88,7 +87,8 @@ def neighbour(
         result = solver.solve(start, deadline=deadline, warm=warm, problem=problem)
         if result.converged:
             name, asked = plan.start.partition(MESH)[0], scenario.solver.intervals
-            return Plan(scenario, problem, spline, name if intervals == asked else f"{name}{MESH}{intervals}", result)
+            start_name = name if intervals == asked else f"{name}{MESH}{intervals}"
+            return Plan(scenario, problem, spline, start_name, result, origin=plan)
         if result.status == STOPPED:
             break
     return None
@@ -138,27 +138,25 @@ def rivals(plans: Sequence[Plan], best: Plan, accuracy: Accuracy) -> list[Plan]:
     chosen = [best]
     for plan in plans:
         here = plan.result.objective
-        known = any(abs(here - other.result.objective) <= SAME_OPTIMUM * here for other in chosen)
-        if plan.result.converged and here <= within and not known:
+        if plan.result.converged and here <= within and not is_known(here, chosen):
             chosen.append(plan)
     return chosen
 
 
-def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
-    """Return the best verified optimum that others lead to on so many intervals; None if there is none.
+def is_known(objective: float, plans: Sequence[Plan]) -> bool:
+    """Return whether an optimum with that objective is among those on the same mesh."""
+    return any(abs(objective - plan.result.objective) <= SAME_OPTIMUM * objective for plan in plans)
 
-    What each optimum came of is kept in ``search.origins``.
-    """
-    found, search.origins = [], {}
+
+def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
+    """Return the best verified optimum that others lead to on so many intervals; None if there is none."""
+    found = []
     solvers = tuple(dict.fromkeys((search.scenario.solver.name, SURE)))
     for plan in plans:
         search.say(f"solving on {intervals} intervals: {plan.start}")
         if (there := neighbour(search.workshop, plan, intervals, solvers, search.deadline, search.say)) is not None:
             found.append(there)
-            search.origins[there.start] = plan
-            result = there.result
-            record = StartRecord(there.start, "converged", result.objective, result.iterations, result.seconds)
-            search.records.append(record)
+            search.record(there.start, there.result)
     search.plans = sorted(found, key=lambda plan: plan.result.objective)
     search.say("verifying with Pinocchio")
     return next((plan for plan in search.plans if plan.solved or plan.refinable), None)
@@ -170,8 +168,7 @@ def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
     The search goes from mesh to mesh, each twice as fine, until ``Refine`` is met, its time is over or the mesh is the
     finest there may be; what came of it is among its notes.
     """
-    origin = search.origins.get(plan.start)
-    accuracy = compared(plan, origin) if origin is not None else Accuracy.between_knots(plan.verification)
+    accuracy = compared(plan, plan.origin) if plan.origin else Accuracy.between_knots(plan.verification)
     if not accuracy.estimated:
         accuracy = estimate(search.workshop, plan, search.deadline, search.say)
     wanted, coarse = search.scenario.refine, plan.spline.intervals
@@ -179,13 +176,12 @@ def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
         return plan, accuracy
     missing = first
     while missing and 2 * plan.spline.intervals <= FINEST and time.monotonic() < search.deadline:
-        candidates = {rival.start.partition(MESH)[0]: rival for rival in rivals(search.plans, plan, accuracy)}
         intervals = 2 * plan.spline.intervals
-        best = finer(search, [*candidates.values()], intervals)
+        best = finer(search, rivals(search.plans, plan, accuracy), intervals)
         if best is None or not best.solved:
             search.notes.append(f"no solution was found on {intervals} intervals")
             break
-        origin = candidates[best.start.partition(MESH)[0]]
+        origin = best.origin or plan
         if origin is not plan:
             search.notes.append(
                 f"on {best.spline.intervals} intervals another local optimum is the best, with J = "

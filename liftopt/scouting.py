@@ -16,7 +16,7 @@ from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
-from liftopt.refinement import MESH, QUICKEST, SAME_OPTIMUM
+from liftopt.refinement import MESH, QUICKEST, is_known
 
 if TYPE_CHECKING:
     from liftopt.lift import Search
@@ -57,7 +57,7 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
     optima: list[Plan] = []
     for start, result in sorted(tried, key=lambda pair: pair[1].objective):
-        if result.converged and not any(_same(result.objective, plan.result.objective) for plan in optima):
+        if result.converged and not is_known(result.objective, optima):
             optima.append(Plan(scenario, problem, spline, f"{start.name}{MESH}{intervals}", result))
     near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
     chosen = near[: scenario.solver.starts]
@@ -66,7 +66,3 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
         f"the best {len(chosen)} were taken to {search.spline.intervals}"
     )
     return chosen
-
-
-def _same(one: float, other: float) -> bool:
-    return abs(one - other) <= SAME_OPTIMUM * other

@@ -11,8 +11,9 @@ from liftopt.collocation.guess import Repertoire, repertoire
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.lift import Search
+from liftopt.refinement import SAME_OPTIMUM
 from liftopt.scenario import load_scenario
-from liftopt.scouting import PROMISING, SAME_OPTIMUM, scout
+from liftopt.scouting import PROMISING, scout
 from liftopt.workshop import Workshop
 
 

@@ -82,12 +82,21 @@ def find_moves(
 
 
 def _blended(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> tuple[Array, Array]:
-    """Return what every part adds to the objective of each pair's blend (parts, B), and ``_turned`` (agents, B)."""
+    """Return what every part adds to the objective of each pair's blend (parts, B), and how far hands turn (agents, B).
+
+    The latter is by how much the cosine of an agent's hand on the object is beyond its limit, a mean over time.
+    """
     batch, terms, turned = Batch(problem), [], []
+    blocks = [block for block in problem.constraints.blocks if block.name == "grasp_turn"]
     for n in range(0, len(pairs), CHUNK):
         blends = blend_all(problem, pairs[n : n + CHUNK])
         terms.append(batch.terms(blends))
-        turned.append(np.array([_turned(problem, agent, blends) for agent in problem.team.agents]))
+        g = batch.rows(blends) if blocks else np.zeros((len(blends), 0))
+        missed = np.zeros((len(problem.team.agents), len(blends)))
+        for i, agent in enumerate(problem.team.agents):
+            own = [np.maximum(0.0, block.lower - g[:, block.rows]) for block in blocks if block.who == agent.name]
+            missed[i] = np.hstack(own).mean(axis=1) if own else 0.0
+        turned.append(missed)
     return np.hstack(terms), np.hstack(turned)
 
 
@@ -105,16 +114,6 @@ def blend_all(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> Arr
     x[:, problem.layout.control] = join(problem.mesh.control_phase, coordinates)
     x[:, problem.layout.force] = join(problem.mesh.phase, forces)
     return np.asarray(np.clip(x, *problem.bounds()))
-
-
-def _turned(problem: Problem, agent: Agent, blends: Array) -> Array:
-    """Return by how much the cosine of an agent's hand on the object is beyond its limit (B,), a mean over time."""
-    blocks = [b for b in problem.constraints.blocks if b.name == "grasp_turn" and b.who == agent.name]
-    if not blocks:
-        return np.zeros(len(blends))
-    rows = np.concatenate([np.arange(block.rows.start, block.rows.stop) for block in blocks])
-    missed = np.concatenate([block.lower for block in blocks]) - Batch(problem, rows).rows(blends)
-    return np.asarray(np.maximum(0.0, missed).mean(axis=1))
 
 
 def apart(agent: Agent, q: Array) -> Array:
