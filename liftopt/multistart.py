@@ -8,7 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from queue import SimpleQueue
 
-from liftopt.collocation.guess import Start, recombined, turned
+import numpy as np
+
+from liftopt.collocation.guess import Start, mirrored, recombined, turned
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 
@@ -105,3 +107,25 @@ def follow_up(
             result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
             optima += [result] if result.converged else []
             yield start, result
+
+
+def bent_otherwise(
+    solver: Solver, optima: Sequence[SolverResult], deadline: float, problem: Problem
+) -> Iterator[tuple[Start, SolverResult]]:
+    """Solve from optima with one joint bent the other way, and yield each start with its result; see ``mirrored``.
+
+    Args:
+        solver: for the problem.
+        optima: what to start from; the lowest objective found so far is the rival.
+        deadline: ``time.monotonic`` value past which no more is tried.
+        problem: what is solved.
+    """
+    if not optima:
+        return
+    best = min(optima, key=lambda result: result.objective)
+    for start in (start for optimum in optima for start in mirrored(problem, optimum.x)):
+        if time.monotonic() > deadline:
+            return
+        result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
+        best = min(best, result, key=lambda known: known.objective if known.converged else np.inf)
+        yield start, result

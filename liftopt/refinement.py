@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from liftopt.accuracy import OTHER_MOTION, Accuracy
-from liftopt.collocation.solvers.result import STOPPED
+from liftopt.collocation.solvers.result import BEATEN, STOPPED, SolverResult
 from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
@@ -63,7 +63,14 @@ def estimate(workshop: Workshop, plan: Plan, deadline: float, say: Say) -> Accur
 
 
 def neighbour(
-    workshop: Workshop, plan: Plan, intervals: int, solvers: Sequence[str], deadline: float, say: Say
+    workshop: Workshop,
+    plan: Plan,
+    intervals: int,
+    solvers: Sequence[str],
+    deadline: float,
+    say: Say,
+    rival: SolverResult | None = None,
+    told: Callable[[str, SolverResult], None] | None = None,
 ) -> Plan | None:
     """Return the optimum that another one leads to on another mesh; None if no solver converges in time.
 
@@ -74,22 +81,26 @@ def neighbour(
         solvers: names, the first to be tried first.
         deadline: ``time.monotonic`` value past which solvers stop.
         say: hears of kernels that are compiled.
+        rival: an optimum on the other mesh; where nothing lower is in sight there is none either.
+        told: hears of the optimum, or that the rival stays the best, with the name of the start.
     """
     spline, scenario = RestToRestSpline(intervals), plan.scenario
     problem = workshop.problem(scenario, spline, say)
     start = transfer(plan.problem, plan.spline, plan.result.x, problem, spline)
     warm = transfer_multipliers(plan.problem, plan.result.multipliers, problem)
+    origin, asked = plan.start.partition(MESH)[0], scenario.solver.intervals
+    start_name = origin if intervals == asked else f"{origin}{MESH}{intervals}"
     for name in solvers:
         try:
             solver = workshop.solver(problem, scenario, name, say)
         except SolverError:  # an extension that is missing: the next one does
             continue
-        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem)
+        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem, rival=rival)
+        if told and (result.converged or result.status == BEATEN):
+            told(start_name, result)
         if result.converged:
-            name, asked = plan.start.partition(MESH)[0], scenario.solver.intervals
-            start_name = name if intervals == asked else f"{name}{MESH}{intervals}"
             return Plan(scenario, problem, spline, start_name, result, origin=plan)
-        if result.status == STOPPED:
+        if result.status in (STOPPED, BEATEN):
             break
     return None
 
@@ -150,13 +161,16 @@ def is_known(objective: float, plans: Sequence[Plan]) -> bool:
 
 def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
     """Return the best verified optimum that others lead to on so many intervals; None if there is none."""
-    found = []
+    found: list[Plan] = []
     solvers = tuple(dict.fromkeys((search.scenario.solver.name, SURE)))
     for plan in plans:
         search.say(f"solving on {intervals} intervals: {plan.start}")
-        if (there := neighbour(search.workshop, plan, intervals, solvers, search.deadline, search.say)) is not None:
+        best = min((there.result for there in found), key=lambda result: result.objective, default=None)
+        there = neighbour(
+            search.workshop, plan, intervals, solvers, search.deadline, search.say, rival=best, told=search.record
+        )
+        if there is not None:
             found.append(there)
-            search.record(there.start, there.result)
     search.plans = sorted(found, key=lambda plan: plan.result.objective)
     search.say("verifying with Pinocchio")
     return next((plan for plan in search.plans if plan.solved or plan.refinable), None)

@@ -8,13 +8,15 @@ within 5 % of the best of all 24 in 50 lifts, the four most promising ones (``mo
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from liftopt.collocation.guess import Repertoire
-from liftopt.collocation.solvers.result import Solver
+from liftopt.collocation.guess import Repertoire, Start
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
-from liftopt.multistart import follow_up, solve_all
+from liftopt.multistart import bent_otherwise, follow_up, solve_all
 from liftopt.plan import Plan
 from liftopt.refinement import MESH, QUICKEST, is_known
 
@@ -28,6 +30,12 @@ PROMISING = 1.1
 # A scout is given up where it promises nothing below so many times the optimum of the first. A margin finds more: of
 # heavy or long lifts the objective falls late.
 MARGIN = 1.2
+# For so many scouts one of their optima, the best first, within so many times the best is tried with joints bent
+# otherwise: of 101 widely varied lifts 78 came within 5 % of the best known with 24 scouts and four optima so tried,
+# 68 without, 79 with 48 scouts without.
+SCOUTS_A_MIRROR, NEAR = 6, 1.2
+# Share of the objective that scouts' KKT errors may reach: the iterations that are saved are a fifth.
+ROUGH = 1e-5
 
 
 def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
@@ -47,7 +55,7 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     search.say(f"trying {len(starts)} starts on {intervals} intervals")
     try:
         solvers: list[Solver] = [
-            search.workshop.solver(problem, scenario, QUICKEST[0], search.say, i)
+            search.workshop.solver(problem, scenario, QUICKEST[0], search.say, i, ROUGH)
             for i in range(min(scenario.solver.workers, len(starts)))
         ]
     except SolverError:  # an extension that is missing: the search goes on without
@@ -55,10 +63,10 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     until = time.monotonic() + SCOUTING_SHARE * (search.deadline - time.monotonic())
     results = list(solve_all(solvers, starts, until, problem, MARGIN))
     tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
-    optima: list[Plan] = []
-    for start, result in sorted(tried, key=lambda pair: pair[1].objective):
-        if result.converged and not is_known(result.objective, optima):
-            optima.append(Plan(scenario, problem, spline, f"{start.name}{MESH}{intervals}", result))
+    optima = _distinct(search, problem, spline, tried)
+    best = [plan.result for plan in optima if plan.result.objective <= NEAR * optima[0].result.objective]
+    tried += bent_otherwise(solvers[0], best[: tries // SCOUTS_A_MIRROR], until, problem)
+    optima = _distinct(search, problem, spline, tried)
     near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
     chosen = near[: scenario.solver.starts]
     search.notes.append(
@@ -66,3 +74,15 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
         f"the best {len(chosen)} were taken to {search.spline.intervals}"
     )
     return chosen
+
+
+def _distinct(
+    search: Search, problem: Problem, spline: RestToRestSpline, tried: Sequence[tuple[Start, SolverResult]]
+) -> list[Plan]:
+    """Return the optima found, the best first, each once."""
+    optima: list[Plan] = []
+    for start, result in sorted(tried, key=lambda pair: pair[1].objective):
+        if result.converged and not is_known(result.objective, optima):
+            name = f"{start.name}{MESH}{spline.intervals}"
+            optima.append(Plan(search.scenario, problem, spline, name, result))
+    return optima

@@ -34,7 +34,8 @@ class Workshop:
         self._team: Team | None = None
         self._postures: PostureSolver | None = None
         self._meshes: dict[int, Mesh] = {}
-        self._solvers: dict[tuple[str, int, float, int], tuple[Problem, Solver]] = {}
+        self._problems: dict[int, tuple[Scenario, Problem]] = {}
+        self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, say: Say | None = None) -> Problem:
         """Return the lift of a scenario on a mesh; ``say`` hears of it when kernels must be compiled first."""
@@ -51,23 +52,33 @@ class Workshop:
             team = self._team = Team.of(agents, held, say, like=team)
         if spline.intervals not in self._meshes:
             self._meshes[spline.intervals] = spline.mesh()
-        return Problem(team, task_of(scenario), self._meshes[spline.intervals])
+        known = self._problems.get(spline.intervals)
+        if known is None or known[0] != scenario or known[1].team is not team:
+            known = scenario, Problem(team, task_of(scenario), self._meshes[spline.intervals])
+            self._problems[spline.intervals] = known
+        return known[1]
 
     def solver(
-        self, problem: Problem, scenario: Scenario, name: str, say: Say | None = None, worker: int = 0
+        self,
+        problem: Problem,
+        scenario: Scenario,
+        name: str,
+        say: Say | None = None,
+        worker: int = 0,
+        rough: float = 0.0,
     ) -> Solver:
-        """Return the solver ``name`` for a problem; each ``worker`` has one of its own.
+        """Return the solver ``name`` for a problem; each ``worker`` has one of its own, ``rough`` as ``BandedOptions``.
 
         Raises:
             SolverError: it cannot be set up.
         """
         tolerance = scenario.solver.tolerance
-        key = (name, worker, tolerance, len(problem.mesh.phase))
+        key = (name, worker, tolerance, rough, len(problem.mesh.phase))
         kept = self._solvers.get(key)
         if kept is None or not problem.interchangeable(kept[0]):
             made: Solver
             if name == "banded":
-                made = Banded(problem, BandedOptions(tolerance=tolerance), say)
+                made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), say)
             else:
                 options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)
                 made = Ipopt(problem, options, wide_kernels(problem, say))

@@ -82,7 +82,9 @@ def test_workers_and_a_kept_workshop_change_nothing(tries: int) -> None:
     both, workshop = load_scenario("table5", [*overrides, "solver.workers=2"]), Workshop()
     assert one.solved
     given_up = "given up: nothing better than another start in sight"
-    assert {s.status for s in one.starts} == {"converged"} | (set() if tries else {given_up})
+    statuses = {start.status for start in one.starts}
+    assert {"converged"} <= statuses <= {"converged", given_up}
+    assert tries or given_up in statuses
     for other in (lift(both, workshop=workshop), lift(both, workshop=workshop)):
         assert other.objective == one.objective
         assert [(s.name, s.objective) for s in other.starts] == [(s.name, s.objective) for s in one.starts]

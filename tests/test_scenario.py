@@ -70,7 +70,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "name": "banded",
             "intervals": 20,
             "starts": 4,
-            "tries": 24,
+            "tries": 48,
             "tolerance": 1e-6,
             "seed": 0,
             "workers": 1,

@@ -13,7 +13,7 @@ from liftopt.errors import SolverError
 from liftopt.lift import Search
 from liftopt.refinement import SAME_OPTIMUM
 from liftopt.scenario import load_scenario
-from liftopt.scouting import PROMISING, scout
+from liftopt.scouting import PROMISING, ROUGH, scout
 from liftopt.workshop import Workshop
 
 
@@ -26,7 +26,7 @@ def _search(*overrides: str, intervals: int = 20) -> tuple[Search, Repertoire]:
 
 
 def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() -> None:
-    """Each is first-order optimal by Pinocchio's derivatives."""
+    """Each is first-order optimal by Pinocchio's derivatives, as far as scouts go."""
     search, found = _search("solver.starts=3")
     plans = scout(search, found, 12)
     assert 1 <= len(plans) <= 3
@@ -35,7 +35,7 @@ def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() ->
     assert objectives[-1] <= PROMISING * objectives[0]
     for plan in plans:
         assert plan.spline.intervals == 10 and plan.start.endswith(", N = 10")
-        assert plan.verification.kkt_error <= 1e-6
+        assert plan.verification.kkt_error <= ROUGH * plan.result.objective
     assert search.notes[-1].endswith(f"the best {len(plans)} were taken to 20")
 
 

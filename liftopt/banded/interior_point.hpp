@@ -8,6 +8,8 @@
 //   - the Newton system is condensed to the unknowns and factorised by a block Cholesky, see newton.hpp;
 //   - there is no restoration phase: where no step is acceptable, delta grows a few times, then it gives up and says
 //     so, or that the violation cannot be reduced from here;
+//   - far from a solution the Hessian may be Gauss's and Newton's, see newton.hpp;
+//   - slope and complementarity may be asked for as a share of the objective (`rough`);
 //   - given the objective of another solution (`rival`), it gives up where this one promises none lower.
 #pragma once
 
@@ -24,6 +26,7 @@ namespace banded {
 
 struct Options {
   double tolerance = 1e-6;           // largest KKT error in the problem's own units
+  double rough = 0.0;                // share of the objective that all but the violation of rows may reach instead
   double objective_scaling = 0.1;    // factor on the objective inside
   double seconds = INFINITY;         // wall time before it stops
   double rival = INFINITY;           // objective of another solution, worth going on only to get below
@@ -65,6 +68,7 @@ class InteriorPoint {
   void find_weights();
   double barrier_error(double mu) const;
   double original_error() const;
+  double slack() const;
   void residuals();
   void solve_newton(const Vector& residual);
   bool step();

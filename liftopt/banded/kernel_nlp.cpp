@@ -235,6 +235,14 @@ void KernelNlp::multiply_hessian(const double* x, double* y) {
   }
 }
 
+bool KernelNlp::drop_curvature() {
+  for (int group = 0; group < knots_.groups(); ++group)
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      std::fill_n(curvatures_.data() + (group * n_curvatures_ + first_curvature_[p]) * lanes(),
+                  parts_[p].curvature_row.size() * lanes(), 0.0);
+  return true;
+}
+
 std::vector<std::pair<int, int>> KernelNlp::coupled(const std::vector<std::vector<int>>& blocks) const {
   return KnotAssembly::coupled(*this, blocks);
 }

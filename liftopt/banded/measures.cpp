@@ -35,6 +35,12 @@ double InteriorPoint::barrier_error(double mu) const {
   return std::max({dual / s_d, largest(residual_), products / s_c});
 }
 
+// How many times the tolerance slope and complementarity may reach.
+double InteriorPoint::slack() const {
+  const double share = options_.rough * std::fabs(now_.f) / options_.objective_scaling;
+  return std::max(1.0, share / options_.tolerance);
+}
+
 // E_0 of (5) for the problem as it was given: unscaled, and without slacks.
 double InteriorPoint::original_error() const {
   const double scale = options_.objective_scaling;
@@ -64,7 +70,7 @@ double InteriorPoint::original_error() const {
   }
   const double s_d = std::max(kMultiplierScale, all / std::max(1, count)) / kMultiplierScale;
   const double s_c = std::max(kMultiplierScale, bounded / std::max(1, sided)) / kMultiplierScale;
-  return std::isfinite(dual + violation) ? std::max({dual / s_d, violation, products / s_c}) : NAN;
+  return std::isfinite(dual + violation) ? std::max({dual / s_d / slack(), violation, products / s_c / slack()}) : NAN;
 }
 
 Merit InteriorPoint::merit(const Point& point) const {

@@ -14,6 +14,8 @@ constexpr double kPenalty = 1e6;
 constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;
 constexpr double kFirstGrowth = 100.0, kGrowth = 8.0, kDecay = 0.1;
 constexpr double kWorthSkipping = 0.1;
+// Of those tried (0.1 to 1e5) 0.5 to 30 do alike.
+constexpr double kMostDelta = 10.0;
 constexpr int kMostRefinements = 5;
 // Residuals of the linear system at which refinement stops, relative to the right-hand side.
 constexpr double kDualResidual = 1e-9, kPrimalResidual = 1e-2;
@@ -36,7 +38,7 @@ void Newton::begin(const std::vector<char>& equality, const std::vector<int>& he
   equality_ = equality;
   held_ = held;
   condensed_.hold(held);
-  delta_ = last_delta_ = 0.0;
+  delta_ = last_delta_ = exact_delta_ = 0.0;
   factorisations = refinements = 0;
   assembly_seconds = factorisation_seconds = 0.0;
 }
@@ -49,30 +51,42 @@ bool Newton::try_delta() {
   return done;
 }
 
+void Newton::assemble() {
+  const double began = seconds_now();
+  condensed_.assemble(row_weight_.data(), sigma_x_.data());
+  assembly_seconds += seconds_now() - began;
+}
+
 bool Newton::factorise(const double* sigma_x, const double* sigma_s, double least_delta) {
   for (int r = 0; r < nlp_.rows(); ++r) {
     sigma_rows_[r] = nlp_.squares[r] + (equality_[r] ? 0.0 : sigma_s[r]);
     row_weight_[r] = sigma_rows_[r] + (equality_[r] ? kPenalty : 0.0);
   }
   std::copy_n(sigma_x, nlp_.unknowns(), sigma_x_.begin());
-  const double began = seconds_now();
-  condensed_.assemble(row_weight_.data(), sigma_x);
-  assembly_seconds += seconds_now() - began;
+  assemble();
   // Where the last matrix needed a large delta, none at all would hardly do now.
-  const bool likely = delta_ > 0.0 && kDecay * delta_ > kWorthSkipping && least_delta == 0.0;
-  delta_ = likely ? kDecay * delta_ : least_delta;
+  const bool likely = exact_delta_ > 0.0 && kDecay * exact_delta_ > kWorthSkipping && least_delta == 0.0;
+  delta_ = likely ? kDecay * exact_delta_ : least_delta;
   if (try_delta()) {
     if (delta_ > 0.0) last_delta_ = delta_;
+    exact_delta_ = delta_;
     return true;
   }
   const bool first = last_delta_ == 0.0;
   if (likely) delta_ *= kGrowth;
   else delta_ = std::max(first ? kFirstDelta : std::max(kLeastDelta, kDecay * last_delta_), 10.0 * least_delta);
-  while (!try_delta()) {
-    delta_ *= first ? kFirstGrowth : kGrowth;
+  bool convex = false;
+  for (;; delta_ *= first ? kFirstGrowth : kGrowth) {
     if (!(delta_ < kLargestDelta)) return false;
+    if (!convex && delta_ > kMostDelta && nlp_.drop_curvature()) {
+      convex = true;
+      exact_delta_ = last_delta_ = delta_;
+      assemble();
+      delta_ = std::max(kFirstDelta, least_delta);
+    }
+    if (try_delta()) break;
   }
-  last_delta_ = delta_;
+  if (!convex) exact_delta_ = last_delta_ = delta_;
   return true;
 }
 

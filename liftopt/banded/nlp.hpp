@@ -37,6 +37,10 @@ class Nlp {
   virtual void multiply_jacobian_transposed(const double* x, double* y) = 0;
   virtual void multiply_hessian(const double* x, double* y) = 0;
 
+  // Leave out of H what outputs and rows add by their own curvature, so that H + J^T diag(squares) J is the matrix of
+  // Gauss and Newton, until the next `differentiate`; false where that part is not known.
+  virtual bool drop_curvature() { return false; }
+
   // Pairs of blocks of unknowns that share an entry of H + J^T J.
   virtual std::vector<std::pair<int, int>> coupled(const std::vector<std::vector<int>>& blocks) const = 0;
   virtual std::unique_ptr<Assembly> assembly(const BlockCholesky& storage) const = 0;

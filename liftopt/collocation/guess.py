@@ -9,16 +9,18 @@ taking turns. What they lead to tells which moves to combine (``recombined``).
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
-from liftopt.collocation.moves import Move, blend_all, find_moves
+from liftopt.collocation.moves import Move, blend_all, combinations, find_moves
 from liftopt.collocation.postures import Posture, PostureSolver, distinct, seed_coordinates
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import SolverResult
+from liftopt.multibody.agent import Agent
 
 Array = npt.NDArray[np.float64]
 # Postures nearer than this in every joint [rad] lead to the same ones.
@@ -30,6 +32,9 @@ NAIVE_FORCE = 10.0
 # A joint that is at a limit for this share of the time, to this [rad], is pressed against it; a full turn may miss the
 # other end of its range by so much [rad].
 PRESSED_SHARE, PRESSED, MISSED = 0.2, 0.01, 0.6
+# A joint that is nearly straight [rad] has no other way to bend; axes with less than this between them are parallel.
+STRAIGHT, PARALLEL = 0.15, 1e-6
+HALF_TURN, WHOLE_TURN = (np.pi, -np.pi), (0.0, 2 * np.pi, -2 * np.pi)
 
 
 @dataclass(frozen=True)
@@ -40,11 +45,13 @@ class Start:
         name: ``"naive"`` or ``"posture pair 1"``, ...
         x: unknowns of the problem it was made for.
         moves: which of its moves each agent makes; empty where that is not known.
+        agent: whose move it is there for; None: nobody's in particular.
     """
 
     name: str
     x: Array
     moves: tuple[int, ...] = ()
+    agent: int | None = None
 
 
 def naive_start(problem: Problem) -> Start:
@@ -68,10 +75,9 @@ class Repertoire:
 
     def starts(self, problem: Problem, count: int) -> list[Start]:
         """Return up to ``count`` starts of the lift, on any mesh, the most promising first."""
-        chosen = combinations([len(moves) for moves in self.moves], count)
         return [
-            Start(f"posture pair {i + 1}", blend(problem, *self._joined(problem, moves)), moves)
-            for i, moves in enumerate(chosen)
+            Start(f"posture pair {i + 1}", blend(problem, *self._joined(problem, moves)), moves, agent)
+            for i, (agent, moves) in enumerate(combinations(self.moves, count))
         ]
 
     def _joined(self, problem: Problem, chosen: tuple[int, ...]) -> tuple[Posture, Posture]:
@@ -142,21 +148,6 @@ def _ends(
     return distinct([*first, *again], SAME), last
 
 
-def combinations(sizes: Sequence[int], count: int) -> list[tuple[int, ...]]:
-    """Return up to ``count`` combinations of moves: the first of every agent, then others of one agent at a time.
-
-    The agents take turns, each from its second move to its last, of which there are as many as ``sizes`` says.
-    """
-    best = (0,) * len(sizes)
-    others = [
-        (*best[:agent], move, *best[agent + 1 :])
-        for move in range(1, max(sizes))
-        for agent, size in enumerate(sizes)
-        if move < size
-    ]
-    return [best, *others][:count]
-
-
 def _together(problem: Problem, own: Sequence[Posture]) -> Posture:
     """Return the posture in which each agent stands as in its ``own``."""
     coordinates = np.mean([posture.coordinates for posture in own], axis=0)
@@ -175,23 +166,21 @@ def blend(problem: Problem, first: Posture, last: Posture) -> Array:
 
 def recombined(problem: Problem, starts: Sequence[Start], results: Sequence[SolverResult]) -> Start | None:
     """Return the start in which every agent makes the move that did best; None if one of the starts is that one."""
-    solved = {start.moves: (result.objective, start) for start, result in zip(starts, results, strict=True)
-              if result.converged and start.moves}  # fmt: skip
-    if starts[0].moves not in solved:
+    solved = [(result.objective, n) for n, result in enumerate(results) if result.converged and starts[n].moves]
+    own = []
+    for agent in range(len(starts[0].moves)):
+        tried = [(objective, starts[n]) for objective, n in solved if starts[n].agent in (None, agent)]
+        if not tried:
+            return None
+        own.append(min(tried, key=lambda entry: entry[0])[1])
+    chosen = tuple(start.moves[agent] for agent, start in enumerate(own))
+    if chosen in [starts[n].moves for _, n in solved]:
         return None
-    best, x = starts[0].moves, starts[0].x.copy()
-    chosen, objects = list(best), []
-    for i in range(len(best)):
-        alone = [entry for moves, entry in solved.items() if moves[:i] + moves[i + 1 :] == best[:i] + best[i + 1 :]]
-        _, start = min(alone, key=lambda entry: entry[0])
-        columns = problem.layout.control[:, problem.layout.columns(i)]
-        chosen[i], x[columns] = start.moves[i], start.x[columns]
-        objects.append(start.x)
-    if tuple(chosen) in solved:
-        return None
-    for columns in (problem.layout.control[:, problem.layout.columns(len(best))], problem.layout.force):
-        x[columns] = np.mean([other[columns] for other in objects], axis=0)
-    return Start("best moves together", x, tuple(chosen))
+    x = np.mean([start.x for start in own], axis=0)
+    for agent, start in enumerate(own):
+        columns = problem.layout.control[:, problem.layout.columns(agent)]
+        x[columns] = start.x[columns]
+    return Start("best moves together", x, chosen)
 
 
 def turned(problem: Problem, x: Array) -> Start | None:
@@ -210,3 +199,42 @@ def turned(problem: Problem, x: Array) -> Start | None:
                     y[columns[:, j]] = np.clip(q + sign * 2 * np.pi, lower, upper)
                     any_turned = True
     return Start("a full turn back", y) if any_turned else None
+
+
+def mirrored(problem: Problem, x: Array) -> Iterator[Start]:
+    """Yield an optimum with one joint bent the other way and its neighbours half a turn on, where their ranges allow.
+
+    That leaves the orientation of what they carry as it is, and its place but for the offsets between the axes: another
+    way to hold much the same, as of an elbow or a wrist.
+    """
+    for i, agent in enumerate(problem.team.agents):
+        columns = problem.layout.control[:, problem.layout.columns(i)]
+        lower, upper = agent.limits.q_lower, agent.limits.q_upper
+        for j, straight in enumerate(in_line(agent)[1:-1], 1):
+            q = x[columns]
+            if np.abs(q[:, j] - straight).mean() < STRAIGHT:
+                continue
+            q[:, j] = 2 * straight - q[:, j]
+            for k, turns in ((j - 1, HALF_TURN), (j, WHOLE_TURN), (j + 1, HALF_TURN)):
+                q[:, k] = min((q[:, k] + turn for turn in turns), key=lambda c: _outside(c, lower[k], upper[k]))
+            if not max(_outside(*joint) for joint in zip(q.T, lower, upper, strict=True)) <= MISSED:
+                continue
+            y = x.copy()
+            y[columns] = np.clip(q, lower, upper)
+            yield Start(f"{agent.name} mirrored at joint {j + 1}", y)
+
+
+def in_line(agent: Agent) -> Array:
+    """Return the angle (n,) of each joint at which the axes of its neighbours are parallel; NaN where there is none."""
+    model, found = agent.reduced(), np.full(len(agent.posture), np.nan)
+    axes = pin.computeJointJacobians(model, model.createData(), np.zeros(model.nq)).reshape(6, -1)[3:].T
+    for j in range(1, len(found) - 1):
+        before, after = (axes[k] - axes[j] * (axes[k] @ axes[j]) for k in (j - 1, j + 1))
+        if min(np.linalg.norm(before), np.linalg.norm(after)) > PARALLEL:
+            found[j] = np.arctan2(axes[j] @ np.cross(after, before), after @ before)
+    return found
+
+
+def _outside(q: Array, lower: float, upper: float) -> float:
+    """Return how far a joint is outside its range [rad], a mean over time."""
+    return float(np.maximum(0.0, np.maximum(q - upper, lower - q)).mean())

@@ -16,6 +16,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.collocation.batch import Batch
+from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.postures import Posture, PostureSolver
 from liftopt.collocation.problem import Problem
 from liftopt.multibody.agent import Agent
@@ -32,6 +33,12 @@ TURNED_WEIGHT = 1e4
 # Moves whose links all begin and end nearer to each other than this [m] mostly lead to the same optimum. Angles would
 # not tell: turning the last joint about its own axis moves nothing.
 SAME = 0.06
+# What an agent's move does to the others counts by what it takes them to hold the object where the move has it at both
+# ends: at best, in one of the postures found, which needs so many times more for each distance [m] from there. Where
+# the object may stand anywhere, one agent's best place is often out of the other's comfort.
+OTHERS_WEIGHT, ELSEWHERE = 0.75, 0.1
+# Moves of several agents that begin or end so far apart [m] count double.
+FAR = 1.0
 # Blends at a time: hundreds of postures make tens of thousands of pairs.
 CHUNK = 512
 
@@ -43,11 +50,13 @@ class Move:
     Attributes:
         first, last: which of the postures.
         promise: what it seems to lead to: its part of the blend's objective, of holding still, and what is too fast.
+        places: where the object is at both ends, x, y, z in the world, one after the other [m].
     """
 
     first: int
     last: int
     promise: float
+    places: tuple[float, ...]
 
 
 def find_moves(
@@ -70,6 +79,9 @@ def find_moves(
         for ends in (first, last)
     ]
     promise = blended + STATIC_WEIGHT * (held[0][:, pairs[:, 0]] + held[1][:, pairs[:, 1]])
+    places = [np.array([p.coordinates[-OBJECT_SIZE : -OBJECT_SIZE + 3] for p in ends]) for ends in (first, last)]
+    there = [_least_there(cost, place) for cost, place in zip(held, places, strict=True)]
+    needed = there[0][:, pairs[:, 0]] + there[1][:, pairs[:, 1]]
     found = []
     for i, agent in enumerate(problem.team.agents):
         columns = problem.layout.columns(i)
@@ -77,8 +89,50 @@ def find_moves(
         travel = np.abs(q[1][pairs[:, 1]] - q[0][pairs[:, 0]])
         excess = np.maximum(0.0, QUINTIC_PEAK * travel / problem.task.duration - agent.limits.velocity).sum(axis=1)
         here = promise[i] + TOO_FAST_WEIGHT * excess + TURNED_WEIGHT * turned[i]
-        found.append(_different(pairs, here, [apart(agent, postures_) for postures_ in q], most))
+        others = needed[: len(problem.team.agents)].sum(axis=0) - needed[i]
+        kept = _different(pairs, here + OTHERS_WEIGHT * others, [apart(agent, postures_) for postures_ in q], most)
+        found.append(tuple(_move(places, here, pairs, n) for n in kept))
     return tuple(found)
+
+
+def _move(places: Sequence[Array], promise: Array, pairs: npt.NDArray[np.int64], n: int) -> Move:
+    first, last = (int(i) for i in pairs[n])
+    return Move(first, last, float(promise[n]), (*places[0][first].tolist(), *places[1][last].tolist()))
+
+
+def _least_there(cost: Array, place: Array) -> Array:
+    """Return what each part needs, ``cost`` (parts, B) in each posture, with the object at each ``place`` (B, 3)."""
+    away = np.linalg.norm(place[:, None] - place[None], axis=2) / ELSEWHERE
+    return np.asarray((cost[:, None, :] * (1 + away)).min(axis=2))
+
+
+def combinations(moves: Sequence[Sequence[Move]], count: int) -> list[tuple[int | None, tuple[int, ...]]]:
+    """Return up to ``count`` combinations of a move of each agent, each with the agent that it is for.
+
+    The first combination, for none in particular, is the most promising one. Then the agents take turns, each from its
+    most promising move to its least, with those moves of the others that go best with it.
+    """
+    promise = [np.array([move.promise for move in own]) for own in moves]
+    places = [np.array([move.places for move in own]) for own in moves]
+    led: list[list[tuple[float, tuple[int, ...]]]] = []
+    for agent, own in enumerate(moves):
+        mine = []
+        for m in range(len(own)):
+            away = [np.linalg.norm((p - places[agent][m]).reshape(-1, 2, 3), axis=2).mean(axis=1) for p in places]
+            joined = [(p + promise[agent][m]) * (1 + off / FAR) for p, off in zip(promise, away, strict=True)]
+            chosen = [int(np.argmin(total)) for total in joined]
+            chosen[agent] = m
+            total = sum(p[n] for p, n in zip(promise, chosen, strict=True))
+            mine.append(
+                (float(total * (1 + max(a[n] for a, n in zip(away, chosen, strict=True)) / FAR)), tuple(chosen))
+            )
+        led.append(sorted(mine))
+    found: dict[tuple[int, ...], int | None] = {min(own[0] for own in led)[1]: None}
+    for n in range(max(map(len, led))):
+        for agent, combined in enumerate(led):
+            if n < len(combined):
+                found.setdefault(combined[n][1], agent)
+    return [(agent, chosen) for chosen, agent in found.items()][:count]
 
 
 def _blended(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> tuple[Array, Array]:
@@ -127,15 +181,14 @@ def apart(agent: Agent, q: Array) -> Array:
     return np.asarray(np.linalg.norm(places[:, None] - places[None], axis=3).max(axis=2))
 
 
-def _different(pairs: npt.NDArray[np.int64], promise: Array, between: list[Array], most: int) -> tuple[Move, ...]:
-    """Return the most promising moves of which no two are the same; ``between``: how far the postures are apart."""
-    kept: list[Move] = []
-    first, last = np.zeros(0, np.int64), np.zeros(0, np.int64)
-    for n in np.argsort(promise, kind="stable"):
+def _different(pairs: npt.NDArray[np.int64], rank: Array, between: list[Array], most: int) -> list[int]:
+    """Return which moves rank first of which no two are the same; ``between``: how far the postures are apart."""
+    kept: list[int] = []
+    for n in np.argsort(rank, kind="stable"):
         i, j = pairs[n]
+        first, last = pairs[kept].T if kept else np.zeros((2, 0), np.int64)
         if (np.maximum(between[0][i, first], between[1][j, last]) > SAME).all():
-            kept.append(Move(int(i), int(j), float(promise[n])))
-            first, last = np.append(first, i), np.append(last, j)
+            kept.append(int(n))
         if len(kept) == most:
             break
-    return tuple(kept)
+    return kept

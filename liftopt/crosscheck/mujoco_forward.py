@@ -1,7 +1,8 @@
 """Forward simulation by MuJoCo with the solved torques: do they make the motion that they are said to make?
 
 The grasps are equality constraints between the grasp points (``connect``), so MuJoCo finds the grasp forces itself;
-contacts are off, the virtual joints are welded. Joints get the torques of the solution, between the knots too.
+contacts are off, the virtual joints are welded. Joints get the torques of the solution, between the knots too; three
+hinges through one point are one ball joint and get the moment that these are components of (``mujoco_balls.py``).
 
 Two point grasps cannot hold the object about the line through them: the optimal-control problem locks that turn and
 reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
@@ -22,8 +23,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.interpolation import refined
 from liftopt.mujoco_model import States, import_mujoco, spec_of, states_of
+from liftopt.scene import agents_of
 from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -109,20 +112,18 @@ class Simulation:
 
     def follow(self) -> Followed:
         """Simulate the whole lift with feedback on all joints and on the object's turn about its grasps."""
-        added = np.zeros(self._model.nv)
-        worst = np.zeros(3)
+        names = [n for a in self.solution.agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves]
+        added, moment, worst = np.zeros(len(names)), 0.0, np.zeros(3)
         self._start(0, True)
         for k in range(len(self._states.qpos) - 1):
             feedback = self._feedback(k)
-            added = np.maximum(added, np.abs(feedback))
+            added = np.maximum(added, np.abs(self._at_hinges(k, feedback)))
+            moment = max(moment, abs(float(feedback[self._roll])))
             worst = np.maximum(worst, self._advance(k, self._feedforward(k, True) + feedback))
             if np.isinf(worst).any():
                 break
-        agents = self.solution.agents
-        limits = np.concatenate([agent.limits.effort for agent in agents])
-        names = [n for a in agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves]
-        torque = added[self._joints]
-        return Followed(Deviation(*worst.tolist()), tuple(names), torque, torque / limits, float(added[self._roll]))
+        limits = np.concatenate([agent.limits.effort for agent in self.solution.agents])
+        return Followed(Deviation(*worst.tolist()), tuple(names), added, added / limits, moment)
 
     @cached_property
     def _dense(self) -> Solution:
@@ -137,6 +138,7 @@ class Simulation:
     def _model(self) -> Any:
         mujoco = import_mujoco()
         spec = spec_of(self.solution, [name for agent in self.solution.agents for name in _pinned(agent)])
+        make_balls(spec, self._balls)
         for agent in self.solution.agents:
             ends = (f"{agent.name}_grasp", f"grasp_{agent.name}")
             for body in ends:
@@ -154,17 +156,41 @@ class Simulation:
         return import_mujoco().MjData(self._model)
 
     @cached_property
+    def _balls(self) -> list[BallMotion]:
+        models = agents_of(self.solution.scenario, self.solution.urdfs)
+        pairs = zip(models, self._dense.agents, strict=True)
+        return [ball for agent, trajectory in pairs for ball in ball_motions(agent.model, trajectory)]
+
+    @cached_property
     def _states(self) -> States:
-        return states_of(self._model, self._dense)
+        states = states_of(self._model, self._dense)
+        for ball in self._balls:
+            at, rate = self._places[ball.hinges[-1]]
+            states.qpos[:, at : at + 4], states.qvel[:, rate] = ball.quaternion, ball.velocity
+            states.tau[:, rate] = ball.moment
+        return states
+
+    @cached_property
+    def _places(self) -> dict[str, tuple[int, slice]]:
+        """Where each joint but the object's stands in qpos, and in qvel."""
+        model, balls = self._model, {ball.hinges[-1] for ball in self._balls}
+        names = [model.joint(j).name for j in range(model.njnt)]
+        joints = [model.joint(name) for name in names if name != f"{self.solution.held.name}_free"]
+        firsts = [(j.name, int(j.qposadr[0]), int(j.dofadr[0])) for j in joints]
+        return {name: (at, slice(rate, rate + (3 if name in balls else 1))) for name, at, rate in firsts}
 
     @cached_property
     def _joints(self) -> list[int]:
-        return [
-            int(self._model.joint(name).dofadr[0])
-            for agent in self.solution.agents
-            for name, moves in zip(agent.joint_names, agent.moving, strict=True)
-            if moves
-        ]
+        return [dof for _, dofs in self._places.values() for dof in range(dofs.start, dofs.stop)]
+
+    def _at_hinges(self, k: int, force: Array) -> Array:
+        """Return the torques (n,) of the moving joints that generalised forces stand for at time ``k``."""
+        torques = {name: force[dofs.start] for name, (_, dofs) in self._places.items()}
+        for ball in self._balls:
+            moment = force[self._places[ball.hinges[-1]][1]]
+            torques |= dict(zip(ball.hinges, ball.axes[k] @ moment, strict=True))
+        moving = [(n, moves) for a in self.solution.agents for n, moves in zip(a.joint_names, a.moving, strict=True)]
+        return np.array([torques[name] for name, moves in moving if moves])
 
     @cached_property
     def _body(self) -> int:

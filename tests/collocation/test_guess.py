@@ -13,14 +13,14 @@ from liftopt.collocation import postures
 from liftopt.collocation.guess import (
     PRESSED,
     Start,
-    combinations,
+    mirrored,
     naive_start,
     posture_starts,
     recombined,
     repertoire,
     turned,
 )
-from liftopt.collocation.moves import SAME, apart
+from liftopt.collocation.moves import ELSEWHERE, SAME, Move, _least_there, apart, combinations
 from liftopt.collocation.postures import PostureSolver, seed_coordinates
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
@@ -97,7 +97,7 @@ def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
 ) -> None:
     """From a posture that one solver found, the other finds the same."""
     task = make_task(agent_weights=(1.0, 1.0))
-    seed = seed_coordinates(Problem(team, task, RestToRestSpline(6).mesh()), task.start, None)
+    seed = seed_coordinates(Problem(team, task, RestToRestSpline(6).mesh()), task.start, np.random.default_rng(0))
     found = PostureSolver(team, task).solve(task.start, seed, time.monotonic() + 10.0)
     assert found is not None
 
@@ -110,16 +110,35 @@ def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
     np.testing.assert_allclose(other.cost, found.cost, rtol=1e-4)
 
 
+def _moves(*promises: float, at: float = 0.0) -> list[Move]:
+    return [Move(n, n, promise, (at, 0.0, 0.0, at, 0.0, 0.0)) for n, promise in enumerate(promises)]
+
+
 def test_agents_change_their_moves_in_turn() -> None:
-    """By hand: the first of each, then one agent's second, the other's second, and so on until one has no more."""
-    assert combinations([3, 2], 10) == [(0, 0), (1, 0), (0, 1), (2, 0)]
-    assert combinations([3, 2], 2) == [(0, 0), (1, 0)]
-    assert combinations([1], 5) == [(0,)]
+    """By hand: the best of each, then one agent's second, the other's second, and so on until one has no more."""
+    moves = [_moves(1.0, 2.0, 3.0), _moves(1.0, 5.0)]
+    assert combinations(moves, 10) == [(None, (0, 0)), (0, (1, 0)), (1, (0, 1)), (0, (2, 0))]
+    assert combinations(moves, 2) == [(None, (0, 0)), (0, (1, 0))]
+    assert combinations([_moves(1.0)], 5) == [(None, (0,))]
+
+
+def test_moves_go_with_those_that_have_the_object_nearby() -> None:
+    """By hand: 3 + 1 a metre apart counts 8, 3 + 4 in one place 7."""
+    moves = [_moves(3.0), [*_moves(1.0, at=1.0), *_moves(4.0)]]
+    assert combinations(moves, 10) == [(None, (0, 1)), (1, (0, 0))]
+
+
+def test_what_others_need_with_the_object_there_comes_from_the_nearest_good_posture() -> None:
+    """By hand: a posture that needs 2 at 0.1 m, doubled by the distance, is better than 5 here."""
+    places = np.array([[0.0, 0.0, 0.0], [ELSEWHERE, 0.0, 0.0]])
+    np.testing.assert_allclose(_least_there(np.array([[5.0, 2.0], [1.0, 9.0]]), places), [[4.0, 2.0], [1.0, 2.0]])
 
 
 def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift: Problem) -> None:
     """Pinocchio's forward kinematics: no two moves begin and end with all links within a few centimetres."""
-    found = repertoire(small_lift, 8, 0, time.monotonic() + 120.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("liftopt.collocation.moves.OTHERS_WEIGHT", 0.0)
+        found = repertoire(small_lift, 8, 0, time.monotonic() + 120.0)
     assert found is not None
     for i, (agent, moves) in enumerate(zip(small_lift.team.agents, found.moves, strict=True)):
         assert 1 <= len(moves) <= 8
@@ -160,7 +179,8 @@ def _result(start: Start, objective: float, converged: bool = True) -> SolverRes
 def test_best_moves_of_all_agents_come_together(small_lift: Problem) -> None:
     """Made-up results: each agent's control points are those of the start in which its move did best."""
     n = small_lift.layout.n_x
-    starts = [Start(str(i), np.full(n, float(i)), moves) for i, moves in enumerate([(0, 0), (1, 0), (0, 1), (2, 0)])]
+    tried = [(None, (0, 0)), (0, (1, 0)), (1, (0, 1)), (0, (2, 0))]
+    starts = [Start(str(i), np.full(n, float(i)), moves, agent) for i, (agent, moves) in enumerate(tried)]
     results = [_result(start, objective) for start, objective in zip(starts, (10.0, 9.0, 8.0, 12.0), strict=True)]
     start = recombined(small_lift, starts, results)
     assert start is not None and start.moves == (1, 1)
@@ -168,9 +188,10 @@ def test_best_moves_of_all_agents_come_together(small_lift: Problem) -> None:
     columns = [small_lift.layout.columns(i) for i in range(3)]
     assert (control[:, columns[0]] == 1.0).all() and (control[:, columns[1]] == 2.0).all()
     assert (control[:, columns[2]] == 1.5).all() and (force == 1.5).all()
-    # Where one agent alone did better, or the first start led nowhere, there is nothing to combine.
+    # Where one agent alone did better, or one has no move that led anywhere, there is nothing to combine.
     assert recombined(small_lift, starts[:2], results[:2]) is None
-    assert recombined(small_lift, starts, [_result(starts[0], 10.0, False), *results[1:]]) is None
+    nowhere = [_result(starts[0], 10.0, False), results[1], _result(starts[2], 8.0, False), results[3]]
+    assert recombined(small_lift, starts, nowhere) is None
 
 
 def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) -> None:
@@ -187,6 +208,32 @@ def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) 
     np.testing.assert_array_equal(start.x[others], x[others])
     x[column] = robot.limits.q_upper[4] - 2 * PRESSED
     assert turned(small_lift, x) is None
+
+
+def test_mirrored_arm_holds_its_last_link_as_before(small_lift: Problem) -> None:
+    """Pinocchio: Sawyer's last link has the same orientation, and at most three joints differ."""
+    robot, layout = small_lift.team.agents[1], small_lift.layout
+    x, columns = naive_start(small_lift).x, layout.control[:, layout.columns(1)]
+    q = np.array([0.3, -0.8, 0.4, 1.0, -0.5, 0.9, 0.2])
+    x[columns] = q
+    found = [start for start in mirrored(small_lift, x) if start.name.startswith("robot")]
+    assert len(found) >= 3
+    model = robot.reduced()
+    data = model.createData()
+
+    def orientation(q: np.ndarray) -> np.ndarray:
+        pin.forwardKinematics(model, data, q)
+        return np.array(data.oMi[model.njoints - 1].rotation)
+
+    for start in found:
+        other = start.x[columns][0]
+        inside = (other > robot.limits.q_lower) & (other < robot.limits.q_upper)
+        if inside.all():
+            np.testing.assert_allclose(orientation(other), orientation(q), atol=1e-9)
+        changed = ~np.isclose(np.cos(other - q), 1.0)
+        assert 2 <= changed.sum() <= 3
+        assert np.delete(start.x, columns.ravel()) == pytest.approx(np.delete(x, columns.ravel()))
+    assert any(((s.x[columns] > robot.limits.q_lower) & (s.x[columns] < robot.limits.q_upper)).all() for s in found)
 
 
 def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[Start], small_lift: Problem) -> None:

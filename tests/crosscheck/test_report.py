@@ -110,6 +110,7 @@ def test_crosscheck_imports_nothing_of_the_solve() -> None:
         "hermite_simpson.py": ("casadi", "functools", "time", "liftopt.collocation.task"),
         "instant.py": ("casadi", "itertools", "liftopt.collocation.task", "liftopt.pinocchio_casadi"),
         "motion_report.py": result,
+        "mujoco_balls.py": (*result, "liftopt.trajectory"),
         "mujoco_dynamics.py": result,
         "mujoco_forward.py": (*result, "functools"),
     }

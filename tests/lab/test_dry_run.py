@@ -150,7 +150,9 @@ def test_streamed_torques_alone_do_not_hold_the_motion(result):
     summary = summarised(run, result.solution.scenario.table.depth)
     assert summary.hand_max > 0.1
     assert summary.delay is None
-    assert np.abs(run.trials[0].position[: round(BEFORE / PERIOD)] - run.planned_position[0]).max() < 0.01
+    # It grows from nothing, by how much until the start depends on the posture.
+    off = np.abs(run.trials[0].position - run.planned_position).max(axis=1)
+    assert off[: round(BEFORE / PERIOD)].max() < 0.05 * off.max()
 
 
 def test_torque_mode_streams_the_plan_on_the_plan(result):

@@ -24,10 +24,12 @@ class Multipliers:
     Attributes:
         x: (n_x,) of the bounds.
         g: (n_g,) of the constraints.
+        interpolated: whether they are from another mesh, and tell less surely which bounds are active.
     """
 
     x: Array
     g: Array
+    interpolated: bool = False
 
 
 @dataclass(frozen=True)

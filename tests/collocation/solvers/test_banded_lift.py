@@ -127,16 +127,45 @@ def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., Li
 
 
 def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Start]) -> None:
-    """One Newton iteration from the same start by the wide kernels and by CasADi's functions through Python."""
+    """A few iterations by the wide kernels and by CasADi's functions through Python, where both take Newton's matrix.
+
+    That is near an optimum: elsewhere the one leaves out curvature, which the other cannot tell from the rest.
+    """
+    optimum = Banded(small_lift).solve(starts[0].x, deadline=soon())
+    assert optimum.converged
+    near = optimum.x + 1e-5 * np.random.default_rng(0).standard_normal(len(optimum.x))
     options = BandedOptions(max_iterations=4)
     wide = Banded(small_lift, options)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("liftopt.collocation.solvers.banded.wide_kernels", lambda *_: None)
         slow = Banded(small_lift, options)
-    one, other = (solver.solve(starts[0].x, deadline=soon()) for solver in (wide, slow))
+    one, other = (solver.solve(near, deadline=soon(), warm=optimum.multipliers) for solver in (wide, slow))
     np.testing.assert_allclose(one.objective, other.objective, rtol=1e-9)
     np.testing.assert_allclose(one.x, other.x, rtol=0, atol=1e-5)
     np.testing.assert_allclose(one.multipliers.g, other.multipliers.g, rtol=0, atol=1e-3)
+
+
+def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts: list[Start]) -> None:
+    """Pinocchio: its KKT error is below the share of the objective that was asked for, its rows hold all the same."""
+    share = 1e-4
+    exact, rough = (
+        Banded(small_lift, BandedOptions(rough=r)).solve(starts[0].x, deadline=soon()) for r in (0.0, share)
+    )
+    assert exact.converged and rough.converged and rough.iterations < exact.iterations
+    assert rough.objective == pytest.approx(exact.objective, rel=1e-2)
+    assert TOLERANCE < kkt_error(small_lift, rough.x, rough.multipliers).error <= share * rough.objective
+    _, g = Banded(small_lift).evaluate(rough.x)
+    assert (g >= small_lift.constraints.lower - TOLERANCE).all() and (
+        g <= small_lift.constraints.upper + TOLERANCE
+    ).all()
+
+
+def test_far_from_a_solution_it_finds_one_where_ipopt_stays(small_lift: Problem, banded: Banded, ipopt: Ipopt) -> None:
+    """From the naive start Newton's matrix is indefinite and curvature is left out; the end must not tell."""
+    found = banded.solve(naive_start(small_lift).x, deadline=soon())
+    assert found.converged and kkt_error(small_lift, found.x, found.multipliers).error <= TOLERANCE
+    stays = ipopt.solve(found.x, deadline=soon(), warm=found.multipliers)
+    assert stays.converged and stays.objective == pytest.approx(found.objective, rel=1e-6)
 
 
 def test_forces_first_is_the_cheaper_order(small_lift: Problem, banded: Banded) -> None:
