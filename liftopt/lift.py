@@ -34,7 +34,7 @@ Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.7
 WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
-WIDER = 8  # times as many starts are tried before a lift that has postures at both ends counts as impossible
+WIDER = 4  # times as many starts are tried before a lift that has postures at both ends counts as impossible
 GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from liftopt.accuracy import Accuracy
 from liftopt.cli import main
+from liftopt.collocation.solvers.result import BEATEN, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.lift import lift
@@ -79,6 +80,21 @@ def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Plan) -> None:
     np.testing.assert_allclose(spline.basis(phase) @ problem.unpack(x)[0], before, atol=1e-9)
     back = transfer(problem, spline, x, coarse.problem, coarse.spline)
     np.testing.assert_allclose(back, coarse.result.x, atol=1e-9)
+
+
+def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Plan) -> None:
+    """Against a rival of a tenth of its objective, and against none."""
+    told: list[tuple[str, str]] = []
+    rival = replace(coarse.result, objective=0.1 * coarse.result.objective)
+
+    def tell(name: str, result: SolverResult) -> None:
+        told.append((name, result.status))
+
+    given = (Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    assert neighbour(*given, rival=rival, told=tell) is None
+    there = neighbour(*given, told=tell)
+    assert there is not None
+    assert told == [(there.start, BEATEN), (there.start, there.result.status)]
 
 
 def test_multipliers_keep_the_sum_over_time(coarse: Plan) -> None:
