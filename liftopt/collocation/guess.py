@@ -166,21 +166,21 @@ def blend(problem: Problem, first: Posture, last: Posture) -> Array:
 
 
 def recombined(problem: Problem, starts: Sequence[Start], results: Sequence[SolverResult]) -> Start | None:
-    """Return the start in which every agent makes the move that did best; None if one of the starts is that one."""
+    """Return the start in which every agent moves as it did best; None if it did so in one of the starts."""
     solved = [(result.objective, n) for n, result in enumerate(results) if result.converged and starts[n].moves]
     own = []
     for agent in range(len(starts[0].moves)):
-        tried = [(objective, starts[n]) for objective, n in solved if starts[n].agent in (None, agent)]
+        tried = [(objective, starts[n], results[n].x) for objective, n in solved if starts[n].agent in (None, agent)]
         if not tried:
             return None
-        own.append(min(tried, key=lambda entry: entry[0])[1])
-    chosen = tuple(start.moves[agent] for agent, start in enumerate(own))
+        own.append(min(tried, key=lambda entry: entry[0])[1:])
+    chosen = tuple(start.moves[agent] for agent, (start, _) in enumerate(own))
     if chosen in [starts[n].moves for _, n in solved]:
         return None
-    x = np.mean([start.x for start in own], axis=0)
-    for agent, start in enumerate(own):
+    x = np.mean([optimum for _, optimum in own], axis=0)
+    for agent, (_, optimum) in enumerate(own):
         columns = problem.layout.control[:, problem.layout.columns(agent)]
-        x[columns] = start.x[columns]
+        x[columns] = optimum[columns]
     return Start("best moves together", x, chosen)
 
 
