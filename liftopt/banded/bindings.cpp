@@ -183,10 +183,10 @@ PYBIND11_MODULE(_liftopt_banded, module) {
           "solve",
           [](Solver& solver, const Doubles& lower_x, const Doubles& upper_x, const Doubles& lower_g,
              const Doubles& upper_g, const Doubles& x0, const std::optional<std::tuple<Doubles, Doubles>>& warm,
-             double tolerance, double rough, double objective_scaling, double seconds, double rival, double mu, double push,
-             int max_iterations, int predictions, int verbose) {
-            const banded::Options options{tolerance, rough, objective_scaling, seconds, rival, mu, push, max_iterations,
-                                           predictions, verbose};
+             double tolerance, double rough, double objective_scaling, double seconds, double rival, double mu,
+             double push, int max_iterations, int predictions, int verbose) {
+            const banded::Options options{tolerance, rough, objective_scaling, seconds, rival, mu, push,
+                                          max_iterations, predictions, verbose};
             return solve(solver.point, *solver.nlp, lower_x, upper_x, lower_g, upper_g, x0, warm, options);
           },
           py::kw_only(), py::arg("lower_x"), py::arg("upper_x"), py::arg("lower_g"), py::arg("upper_g"),

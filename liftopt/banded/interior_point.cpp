@@ -65,7 +65,7 @@ Result InteriorPoint::solve(const double* lower_x, const double* upper_x, const 
     else if (seconds_now() - began > options.seconds) result.status = Status::time;
     else if (beaten()) result.status = Status::beaten;
     else {
-      const double least_mu = kLeastMu * slack() * options.tolerance * options.objective_scaling;
+      const double least_mu = kLeastMu * leniency() * options.tolerance * options.objective_scaling;
       while (mu_ > least_mu && barrier_error(mu_) <= kBarrierError * mu_) {
         mu_ = std::max(least_mu, std::min(kLinearDecrease * mu_, std::pow(mu_, kSuperlinear)));
         filter_.clear();

@@ -68,7 +68,7 @@ class InteriorPoint {
   void find_weights();
   double barrier_error(double mu) const;
   double original_error() const;
-  double slack() const;
+  double leniency() const;
   void residuals();
   void solve_newton(const Vector& residual);
   bool step();

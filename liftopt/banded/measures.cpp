@@ -36,7 +36,7 @@ double InteriorPoint::barrier_error(double mu) const {
 }
 
 // How many times the tolerance slope and complementarity may reach.
-double InteriorPoint::slack() const {
+double InteriorPoint::leniency() const {
   const double share = options_.rough * std::fabs(now_.f) / options_.objective_scaling;
   return std::max(1.0, share / options_.tolerance);
 }
@@ -70,7 +70,8 @@ double InteriorPoint::original_error() const {
   }
   const double s_d = std::max(kMultiplierScale, all / std::max(1, count)) / kMultiplierScale;
   const double s_c = std::max(kMultiplierScale, bounded / std::max(1, sided)) / kMultiplierScale;
-  return std::isfinite(dual + violation) ? std::max({dual / s_d / slack(), violation, products / s_c / slack()}) : NAN;
+  const double optimality = std::max(dual / s_d, products / s_c) / leniency();
+  return std::isfinite(dual + violation) ? std::max(optimality, violation) : NAN;
 }
 
 Merit InteriorPoint::merit(const Point& point) const {

@@ -213,12 +213,12 @@ def mirrored(problem: Problem, x: Array) -> Iterator[Start]:
         lower, upper = agent.limits.q_lower, agent.limits.q_upper
         for j, straight in enumerate(in_line(agent)[1:-1], 1):
             q = x[columns]
-            if np.abs(q[:, j] - straight).mean() < STRAIGHT:
+            if not np.abs(q[:, j] - straight).mean() >= STRAIGHT:  # a NaN is not
                 continue
             q[:, j] = 2 * straight - q[:, j]
             for k, turns in ((j - 1, HALF_TURN), (j, WHOLE_TURN), (j + 1, HALF_TURN)):
                 q[:, k] = min((q[:, k] + turn for turn in turns), key=lambda c: _outside(c, lower[k], upper[k]))
-            if not max(_outside(*joint) for joint in zip(q.T, lower, upper, strict=True)) <= MISSED:
+            if max(_outside(*joint) for joint in zip(q.T, lower, upper, strict=True)) > MISSED:
                 continue
             y = x.copy()
             y[columns] = np.clip(q, lower, upper)

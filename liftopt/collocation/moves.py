@@ -120,12 +120,10 @@ def combinations(moves: Sequence[Sequence[Move]], count: int) -> list[tuple[int 
         for m in range(len(own)):
             away = [np.linalg.norm((p - places[agent][m]).reshape(-1, 2, 3), axis=2).mean(axis=1) for p in places]
             joined = [(p + promise[agent][m]) * (1 + off / FAR) for p, off in zip(promise, away, strict=True)]
-            chosen = [int(np.argmin(total)) for total in joined]
-            chosen[agent] = m
+            chosen = tuple(m if k == agent else int(np.argmin(total)) for k, total in enumerate(joined))
             total = sum(p[n] for p, n in zip(promise, chosen, strict=True))
-            mine.append(
-                (float(total * (1 + max(a[n] for a, n in zip(away, chosen, strict=True)) / FAR)), tuple(chosen))
-            )
+            farthest = max(off[n] for off, n in zip(away, chosen, strict=True))
+            mine.append((float(total * (1 + farthest / FAR)), chosen))
         led.append(sorted(mine))
     found: dict[tuple[int, ...], int | None] = {min(own[0] for own in led)[1]: None}
     for n in range(max(map(len, led))):

@@ -74,10 +74,13 @@ def ball_motions(model: pin.Model, trajectory: AgentTrajectory) -> list[BallMoti
     """
     data, joints, count = model.createData(), ball_joints(model), len(trajectory.q)
     rotation, axes = np.zeros((len(joints), count, 3, 3)), np.zeros((len(joints), count, 3, 3))
-    moment, rest = np.zeros((len(joints), count, 3)), _relative_rotations(model, data, joints, pin.neutral(model))
+    moment = np.zeros((len(joints), count, 3))
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    rest = _relative_rotations(model, data, joints)
     for k, (q, v, a) in enumerate(zip(trajectory.q, trajectory.v, trajectory.a, strict=True)):
-        relative, slopes = _relative_rotations(model, data, joints, q), pin.computeJointJacobians(model, data, q)
+        slopes = pin.computeJointJacobians(model, data, q)
         pin.rnea(model, data, q, v, a)
+        relative = _relative_rotations(model, data, joints)
         for i, j in enumerate(joints):
             here = data.oMi[j]
             rotation[i, k] = rest[i].T @ relative[i]
@@ -95,8 +98,7 @@ def ball_motions(model: pin.Model, trajectory: AgentTrajectory) -> list[BallMoti
     return motions
 
 
-def _relative_rotations(model: pin.Model, data: pin.Data, joints: Sequence[int], q: Array) -> list[Array]:
-    """Return how the body of each ball joint is turned in the body before it."""
-    pin.forwardKinematics(model, data, q)
+def _relative_rotations(model: pin.Model, data: pin.Data, joints: Sequence[int]) -> list[Array]:
+    """Return how the body of each ball joint is turned in the body before it, where ``data`` has them."""
     before = [data.oMi[model.parents[j - 2]].rotation for j in joints]
     return [np.asarray(r.T @ data.oMi[j].rotation) for r, j in zip(before, joints, strict=True)]

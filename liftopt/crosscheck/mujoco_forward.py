@@ -112,8 +112,7 @@ class Simulation:
 
     def follow(self) -> Followed:
         """Simulate the whole lift with feedback on all joints and on the object's turn about its grasps."""
-        names = [n for a in self.solution.agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves]
-        added, moment, worst = np.zeros(len(names)), 0.0, np.zeros(3)
+        added, moment, worst = np.zeros(len(self._hinges)), 0.0, np.zeros(3)
         self._start(0, True)
         for k in range(len(self._states.qpos) - 1):
             feedback = self._feedback(k)
@@ -123,7 +122,7 @@ class Simulation:
             if np.isinf(worst).any():
                 break
         limits = np.concatenate([agent.limits.effort for agent in self.solution.agents])
-        return Followed(Deviation(*worst.tolist()), tuple(names), added, added / limits, moment)
+        return Followed(Deviation(*worst.tolist()), self._hinges, added, added / limits, moment)
 
     @cached_property
     def _dense(self) -> Solution:
@@ -183,14 +182,19 @@ class Simulation:
     def _joints(self) -> list[int]:
         return [dof for _, dofs in self._places.values() for dof in range(dofs.start, dofs.stop)]
 
+    @cached_property
+    def _hinges(self) -> tuple[str, ...]:
+        """Names of the solution's moving joints."""
+        agents = self.solution.agents
+        return tuple(n for a in agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves)
+
     def _at_hinges(self, k: int, force: Array) -> Array:
         """Return the torques (n,) of the moving joints that generalised forces stand for at time ``k``."""
         torques = {name: force[dofs.start] for name, (_, dofs) in self._places.items()}
         for ball in self._balls:
             moment = force[self._places[ball.hinges[-1]][1]]
             torques |= dict(zip(ball.hinges, ball.axes[k] @ moment, strict=True))
-        moving = [(n, moves) for a in self.solution.agents for n, moves in zip(a.joint_names, a.moving, strict=True)]
-        return np.array([torques[name] for name, moves in moving if moves])
+        return np.array([torques[name] for name in self._hinges])
 
     @cached_property
     def _body(self) -> int:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -13,6 +15,7 @@ from liftopt.collocation import postures
 from liftopt.collocation.guess import (
     PRESSED,
     Start,
+    in_line,
     mirrored,
     naive_start,
     posture_starts,
@@ -234,6 +237,18 @@ def test_mirrored_arm_holds_its_last_link_as_before(small_lift: Problem) -> None
         assert 2 <= changed.sum() <= 3
         assert np.delete(start.x, columns.ravel()) == pytest.approx(np.delete(x, columns.ravel()))
     assert any(((s.x[columns] > robot.limits.q_lower) & (s.x[columns] < robot.limits.q_upper)).all() for s in found)
+
+
+def test_only_joints_between_axes_that_can_be_parallel_are_mirrored(small_lift: Problem) -> None:
+    """Closed form: of hinges about z, x, z, z the second is in line at 0, the third has a neighbour along itself."""
+    model, parent = pin.Model(), 0
+    for n, kind in enumerate((pin.JointModelRZ, pin.JointModelRX, pin.JointModelRZ, pin.JointModelRZ)):
+        parent = model.addJoint(parent, kind(), pin.SE3.Identity(), str(n))
+    arm: Any = SimpleNamespace(reduced=lambda: model, posture=np.zeros(4))
+    np.testing.assert_allclose(in_line(arm), [np.nan, 0.0, np.nan, np.nan], atol=1e-12)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("liftopt.collocation.guess.in_line", lambda agent: np.full(len(agent.posture), np.nan))
+        assert list(mirrored(small_lift, naive_start(small_lift).x)) == []
 
 
 def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[Start], small_lift: Problem) -> None:
