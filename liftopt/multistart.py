@@ -8,9 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from queue import SimpleQueue
 
-import numpy as np
-
-from liftopt.collocation.guess import Start, mirrored, recombined, turned
+from liftopt.collocation.guess import Start, recombined, turned
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 
@@ -41,32 +39,48 @@ def solve_all(
     Raises:
         SolverError: a solver cannot run at all.
     """
+    first, *others = starts
+    (leader,) = solve_each(solvers[:1], [(first, None)], deadline, problem, START_SHARE if others else 1.0)
+    yield leader
+    rival = replace(leader, objective=margin * leader.objective)
+    yield from solve_each(solvers, [(start, rival if start.moves else None) for start in others], deadline, problem)
+
+
+def solve_each(
+    solvers: Sequence[Solver],
+    starts: Sequence[tuple[Start, SolverResult | None]],
+    deadline: float,
+    problem: Problem | None = None,
+    share: float = START_SHARE,
+) -> Iterator[SolverResult]:
+    """Solve from every start, each with the rival it has, if any; yield the results in their order.
+
+    Args:
+        solvers: one for each thread, as for ``solve_all``.
+        starts: where to start, and what is to be beaten.
+        deadline: ``time.monotonic`` value past which solvers stop.
+        problem: what is solved; None: what each solver was built for.
+        share: of the time that is left, which one start may take.
+
+    Raises:
+        SolverError: a solver cannot run at all.
+    """
     idle: SimpleQueue[Solver] = SimpleQueue()
     for solver in solvers:
         idle.put(solver)
 
-    def solve(start: Start, leader: SolverResult | None) -> SolverResult:
+    def solve(start: Start, rival: SolverResult | None) -> SolverResult:
         now, solver = time.monotonic(), idle.get()
-        until = deadline if len(starts) == 1 else now + START_SHARE * (deadline - now)
         try:
-            rival = replace(leader, objective=margin * leader.objective) if leader and start.moves else None
-            return solver.solve(start.x, deadline=until, problem=problem, rival=rival)
+            return solver.solve(start.x, deadline=now + share * (deadline - now), problem=problem, rival=rival)
         finally:
             idle.put(solver)
 
-    first, *others = starts
-    if len(solvers) == 1:
-        yield (found := solve(first, None))
-        for start in others:
-            yield solve(start, found)
+    if min(len(solvers), len(starts)) < 2:
+        yield from (solve(*start) for start in starts)
         return
-
-    def follow(start: Start) -> SolverResult:
-        return solve(start, leading.result())
-
     with ThreadPoolExecutor(len(solvers), thread_name_prefix="start") as pool:
-        leading = pool.submit(solve, first, None)
-        futures = [leading, *(pool.submit(follow, start) for start in others)]
+        futures = [pool.submit(solve, *start) for start in starts]
         try:
             for future in futures:
                 yield future.result()
@@ -107,25 +121,3 @@ def follow_up(
             result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
             optima += [result] if result.converged else []
             yield start, result
-
-
-def bent_otherwise(
-    solver: Solver, optima: Sequence[SolverResult], deadline: float, problem: Problem
-) -> Iterator[tuple[Start, SolverResult]]:
-    """Solve from optima with one joint bent the other way, and yield each start with its result; see ``mirrored``.
-
-    Args:
-        solver: for the problem.
-        optima: what to start from; the lowest objective found so far is the rival.
-        deadline: ``time.monotonic`` value past which no more is tried.
-        problem: what is solved.
-    """
-    if not optima:
-        return
-    best = min(optima, key=lambda result: result.objective)
-    for start in (start for optimum in optima for start in mirrored(problem, optimum.x)):
-        if time.monotonic() > deadline:
-            return
-        result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
-        best = min(best, result, key=lambda known: known.objective if known.converged else np.inf)
-        yield start, result

@@ -73,7 +73,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "tries": 48,
             "tolerance": 1e-6,
             "seed": 0,
-            "workers": 1,
+            "workers": 2,
             "time_limit": 50.0,
         },
         "refine": {"on": False, "objective_error": 0.02, "closure": 1e-4, "balance": 0.1, "torque_excess": 0.1},

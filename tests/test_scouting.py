@@ -7,13 +7,14 @@ import time
 import numpy as np
 import pytest
 
-from liftopt.collocation.guess import Repertoire, repertoire
+from liftopt.collocation.guess import Repertoire, Start, repertoire
+from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.lift import Search
 from liftopt.refinement import SAME_OPTIMUM
 from liftopt.scenario import load_scenario
-from liftopt.scouting import PROMISING, ROUGH, scout
+from liftopt.scouting import PROMISING, ROUGH, _unseen, scout
 from liftopt.workshop import Workshop
 
 
@@ -55,3 +56,29 @@ def test_the_search_goes_on_without_scouts_where_their_solver_is_missing(monkeyp
 
     monkeypatch.setattr(search.workshop, "solver", missing)
     assert scout(search, found, 12) == []
+
+
+def test_the_chance_of_something_new_is_the_share_of_what_was_found_once() -> None:
+    """Good (1953), by hand: of six starts that converged, to 1, 1, 2, 3, 3 and 4, two led where no other did."""
+    x = np.zeros(1)
+
+    def tried(*objectives: float) -> list[tuple[Start, SolverResult]]:
+        return [
+            (Start("", x), SolverResult(x, Multipliers(x, x), J, 1, bool(np.isfinite(J)), "", 0.0, 0.0))
+            for J in objectives
+        ]
+
+    assert _unseen(tried(3.0, 1.0, 4.0, 1.0 + 1e-6, np.nan, 3.0, 2.0)) == pytest.approx(2 / 6)
+    assert _unseen(tried(1.0, 2.0)) == 1.0
+    assert _unseen(tried(1.0, 1.0)) == 0.0
+    assert _unseen(tried(np.nan)) == 1.0
+
+
+def test_where_an_optimum_was_found_once_the_best_are_varied() -> None:
+    """More is tried than 12 starts and two that come of them; Pinocchio's derivatives judge the optima."""
+    overrides = ["table.mass=9", "duration=5", "task.start.human_distance=free", "task.end.human_distance=free"]
+    search, found = _search(*overrides)
+    plans = scout(search, found, 12)
+    assert plans and int(search.notes[-1].split()[0]) > 12 + 2
+    for plan in plans:
+        assert plan.verification.kkt_error <= ROUGH * plan.result.objective

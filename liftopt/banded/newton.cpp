@@ -18,7 +18,7 @@ constexpr double kWorthSkipping = 0.1;
 constexpr double kMostDelta = 10.0;
 constexpr int kMostRefinements = 5;
 // Residuals of the linear system at which refinement stops, relative to the right-hand side.
-constexpr double kDualResidual = 1e-9, kPrimalResidual = 1e-2;
+constexpr double kDualResidual = 1e-6, kPrimalResidual = 1e-2;
 
 double largest(const Vector& v) {
   double worst = 0.0;

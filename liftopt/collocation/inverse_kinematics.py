@@ -19,6 +19,8 @@ from liftopt.collocation.problem import Problem
 
 Array = npt.NDArray[np.float64]
 CLOSED = 1e-6  # [m]
+# A seed that is not closed by then seldom closes.
+CLOSING_ITERATIONS = 20
 LONGEST_STEP = 0.6  # [rad]
 DAMPING, EASE, TIGHTEN, STUCK = 1e-3, 0.2, 8.0, 1e6
 # Damping falls no lower: two stretched arms leave the gaps nearly dependent.
@@ -72,14 +74,14 @@ class InverseKinematics:
         """Bring all grasps as near as possible.
 
         Args:
-            pose: (6,) of the object; NaN leaves a coordinate free within the task's range.
+            pose: of the object, (6,) or one for each seed (B, 6); NaN leaves a coordinate free within the task's range.
             seeds: (B, n) coordinates to start from.
             deadline: ``time.monotonic`` value past which it returns what it has.
             most: iterations.
             any_angle: leave out the joints' ranges of motion.
             anywhere: leave out the half-spaces and the limits on the hands' angles.
         """
-        lower, upper = self._bounds(pose, any_angle)
+        lower, upper = self._bounds(np.broadcast_to(pose, (len(seeds), OBJECT_SIZE)), any_angle)
         x = np.zeros((len(seeds), self.problem.layout.n_x))
         x[:, self._columns] = np.clip(seeds, lower, upper)
         damping, left = np.full(len(x), DAMPING), self._left(x, anywhere)
@@ -91,8 +93,8 @@ class InverseKinematics:
             trial = x[todo]
             here = trial[:, self._columns]
             slopes = self._batch.slopes(trial)[:, :, self._columns] * (left[todo] != 0)[:, :, None]
-            step = _least_norm_step(slopes, left[todo], damping[todo], here - lower, upper - here)
-            trial[:, self._columns] = np.clip(here + step, lower, upper)
+            step = _least_norm_step(slopes, left[todo], damping[todo], here - lower[todo], upper[todo] - here)
+            trial[:, self._columns] = np.clip(here + step, lower[todo], upper[todo])
             after = self._left(trial, anywhere)
             was, now = (left[todo] ** 2).sum(axis=1), (after**2).sum(axis=1)
             better = now < was
@@ -112,9 +114,13 @@ class InverseKinematics:
         return left
 
     def _bounds(self, pose: Array, any_angle: bool) -> tuple[Array, Array]:
-        lower, upper = (bound[self._columns] for bound in self.problem.at_pose(pose).bounds())
+        """Return lower and upper bounds (B, n) with the object at ``pose`` (B, 6), NaN where it is free."""
+        free = self.problem.at_pose(np.full(OBJECT_SIZE, np.nan)).bounds()
+        lower, upper = (np.tile(bound[self._columns], (len(pose), 1)) for bound in free)
+        for bound in (lower, upper):
+            bound[:, -OBJECT_SIZE:] = np.where(np.isnan(pose), bound[:, -OBJECT_SIZE:], pose)
         if any_angle:
-            lower[:-OBJECT_SIZE], upper[:-OBJECT_SIZE] = -np.pi, np.pi
+            lower[:, :-OBJECT_SIZE], upper[:, :-OBJECT_SIZE] = -np.pi, np.pi
         return lower, upper
 
 

@@ -156,8 +156,7 @@ def blend_all(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> Arr
     """Return the unknowns (B, n_x) that join each pair by the quintic of minimum jerk, within their bounds."""
 
     def join(phase: Array, ends: Array) -> Array:
-        share = (10 * phase**3 - 15 * phase**4 + 6 * phase**5)[:, None]
-        return np.asarray(ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * share)
+        return np.asarray(ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * quintic(phase)[:, None])
 
     x = np.empty((len(pairs), problem.layout.n_x))
     coordinates = np.array([[posture.coordinates for posture in pair] for pair in pairs])
@@ -166,6 +165,11 @@ def blend_all(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> Arr
     x[:, problem.layout.control] = join(problem.mesh.control_phase, coordinates)
     x[:, problem.layout.force] = join(problem.mesh.phase, forces)
     return np.asarray(np.clip(x, *problem.bounds()))
+
+
+def quintic(phase: Array) -> Array:
+    """Return the share of the way that minimum jerk from rest to rest has covered at each ``phase`` from 0 to 1."""
+    return np.asarray(10 * phase**3 - 15 * phase**4 + 6 * phase**5)
 
 
 def apart(agent: Agent, q: Array) -> Array:

@@ -1,0 +1,133 @@
+"""Variations: optima changed in ways that no solver takes by itself, until nothing better comes of it.
+
+The best optimum is varied first, a few times, then the next best or the best again, as in a best-first search. Each
+variation changes much of one agent's motion and leaves the rest: a joint bent the other way (``mirrors.py``), another
+way along the same path (``other_ways.py``), a detour (``detours.py``). Of widely varied lifts all three lead to a
+better optimum about as often for each iteration of the solver: once in a thousand.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from liftopt.collocation.detours import detours, rests
+from liftopt.collocation.guess import Start
+from liftopt.collocation.mirrors import mirrored
+from liftopt.collocation.other_ways import other_ways
+from liftopt.collocation.postures import PostureSolver
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.result import Solver, SolverResult
+from liftopt.multistart import solve_each
+
+# Variations of one optimum that are solved before the next is chosen. All have the best optimum known before as their
+# rival: what comes of them does not depend on how many are solved at a time.
+TURN = 8
+# An optimum is chosen as if it were so much worse, as a share, for each turn it had; none further above the best.
+WEARY, NEAR = 0.05, 1.2
+# What is lower by less than the first is no gain, by less than the second the same optimum.
+GAIN, SAME = 1e-3, 1e-4
+
+
+@dataclass
+class _Varied:
+    """An optimum and what is left of its variations."""
+
+    result: SolverResult
+    left: Iterator[Start]
+    turns: int = 0
+    exhausted: bool = False
+
+    @property
+    def rank(self) -> float:
+        return self.result.objective * (1 + WEARY * self.turns)
+
+
+def vary(
+    solvers: Sequence[Solver],
+    problem: Problem,
+    postures: PostureSolver,
+    optima: Sequence[SolverResult],
+    idle: float,
+    seed: int,
+    deadline: float,
+) -> Iterator[tuple[Start, SolverResult]]:
+    """Solve from variations of optima and of what comes of them; yield each with its result.
+
+    Args:
+        solvers: for the problem, one for each thread.
+        problem: what is solved.
+        postures: static postures of the same team.
+        optima: what is varied, at least one.
+        idle: variations without a gain after which it ends.
+        seed: of what is random.
+        deadline: ``time.monotonic`` value past which no more is tried.
+    """
+    if not idle:
+        return
+    rng = np.random.default_rng(seed)
+    by = rests(problem, postures, rng, deadline)
+
+    def varied(result: SolverResult) -> _Varied:
+        x, kinematics = result.x, postures.kinematics
+        kinds: tuple[Callable[[], Iterator[Start]], ...] = (
+            lambda: mirrored(problem, x),
+            lambda: iter(detours(problem, kinematics, x, by, deadline)),
+            lambda: _again_and_again(lambda: other_ways(problem, kinematics, x, rng, deadline)),
+        )
+        return _Varied(result, _in_turns(kinds))
+
+    known, best, since = [varied(optimum) for optimum in optima], min(optima, key=_objective), 0
+    while since < idle and time.monotonic() < deadline:
+        most = NEAR * best.objective
+        ready = [entry for entry in known if entry.result.objective <= most and not entry.exhausted]
+        if not ready:
+            return
+        chosen = min(ready, key=lambda entry: entry.rank)
+        starts = [start for _, start in zip(range(TURN), chosen.left, strict=False)]
+        chosen.turns += 1
+        chosen.exhausted = len(starts) < TURN
+        rival = best
+        for start, result in zip(
+            starts, solve_each(solvers, [(s, rival) for s in starts], deadline, problem), strict=True
+        ):
+            yield start, result
+            since += 1
+            if not result.converged or any(_same(result, entry.result) for entry in known):
+                continue
+            known.append(varied(result))
+            if result.objective < (1 - GAIN) * best.objective:
+                since = 0
+            best = min(best, result, key=_objective)
+
+
+def _in_turns(kinds: Sequence[Callable[[], Iterator[Start]]]) -> Iterator[Start]:
+    """Yield one of each kind after the other, each kind made when it is its turn."""
+    made: list[Iterator[Start]] = []
+    for kind in kinds:
+        made.append(kind())
+        if (start := next(made[-1], None)) is not None:
+            yield start
+    while made:
+        for kind_left in list(made):
+            if (start := next(kind_left, None)) is None:
+                made.remove(kind_left)
+            else:
+                yield start
+
+
+def _again_and_again(make: Callable[[], list[Start]]) -> Iterator[Start]:
+    """Yield what is made, and what is made next, until nothing is."""
+    while starts := make():
+        yield from starts
+
+
+def _objective(result: SolverResult) -> float:
+    return result.objective
+
+
+def _same(one: SolverResult, other: SolverResult) -> bool:
+    return abs(one.objective - other.objective) <= SAME * one.objective
