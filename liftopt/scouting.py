@@ -66,8 +66,9 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     until = time.monotonic() + SCOUTING_SHARE * (search.deadline - time.monotonic())
     results = list(solve_all(solvers, starts, until, problem, MARGIN))
     tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
-    optima = _distinct(search, problem, spline, tried)
+    optima, plain = _distinct(search, problem, spline, tried), len(tried)
     if optima:
+        search.say(f"varying the best of {len(optima)} optima")
         results = [plan.result for plan in optima]
         idle = min(IDLE * _unseen(tried), MOST_IDLE) * tries
         tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until)
@@ -75,7 +76,7 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
     chosen = near[: scenario.solver.starts]
     search.notes.append(
-        f"{len(tried)} starts on {intervals} intervals led to {len(optima)} optima; "
+        f"{plain} starts and {len(tried) - plain} variations on {intervals} intervals led to {len(optima)} optima; "
         f"the best {len(chosen)} were taken to {search.spline.intervals}"
     )
     return chosen

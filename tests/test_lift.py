@@ -34,7 +34,7 @@ def test_objective_is_no_worse_than_a_fifth_above_the_prototypes(
 def test_best_of_the_starts_is_kept_and_all_are_told(solved: Callable[..., Any]) -> None:
     solution = solved("table5").solution
     assert solution.kept_start in {start.name for start in solution.starts}
-    tried = "starts on 10 intervals led to"
+    tried = " variations on 10 intervals led to"
     assert any(
         tried in note and note.endswith(f"the best {len(solution.starts)} were taken to 20") for note in solution.notes
     )
