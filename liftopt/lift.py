@@ -34,6 +34,9 @@ Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.7
 WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
+# Postures searched from, for each start tried on half the intervals: of 44 widely varied lifts, each with two seeds, 86
+# of 88 came within 5 % of what takes five times as long, with one 80 of 86, with one and twice the starts 85 of 88.
+SEEDS_A_TRY = 2
 WIDER = 4  # times as many starts are tried before a lift that has postures at both ends counts as impossible
 GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}
 
@@ -108,7 +111,7 @@ class Search:
         until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
         tries = max(options.starts, options.tries) if options.tries else 0
         most = tries or options.starts
-        found = repertoire(self.problem, most, options.seed, until, self.say, self.postures)
+        found = repertoire(self.problem, most, options.seed, until, self.say, self.postures, SEEDS_A_TRY * tries)
         if found is None or too_fast(self.problem):
             nearest, obstacles = self._nearest()
             if obstacles:
@@ -132,7 +135,7 @@ class Search:
         tries, seed = WIDER * self.scenario.solver.tries, self.scenario.solver.seed + 1
         if not tries or time.monotonic() > self.deadline:
             return None
-        found = repertoire(self.problem, tries, seed, self.deadline, self.say, self.postures)
+        found = repertoire(self.problem, tries, seed, self.deadline, self.say, self.postures, SEEDS_A_TRY * tries)
         optima = scout(self, found, tries) if found else []
         best = finer(self, optima, self.spline.intervals) if optima else None
         if best is not None:

@@ -34,8 +34,7 @@ PROMISING = 1.1
 MARGIN = 1.2
 # Variations of the optima without a gain, for each try, after which there are no more: so many times the chance that
 # is left to find an optimum that is not known (``_unseen``), at most the second. Of 38 lifts variations lowered the
-# objective by over 1 % in 8 of 11 where that chance was 0.35 or more, in 5 of 27 where it was less; three times as many
-# gained nothing more.
+# objective by over 1 % in 8 of 11 where that chance was 0.35 or more, in 5 of 27 where it was less; more gained little.
 IDLE, MOST_IDLE = 6.0, 2.0
 # Share of the objective that scouts' KKT errors may reach: the iterations that are saved are a fifth.
 ROUGH = 1e-5

@@ -22,14 +22,15 @@ from liftopt.collocation.postures import PostureSolver
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.multistart import solve_each
+from liftopt.refinement import SAME_OPTIMUM
 
 # Variations of one optimum that are solved before the next is chosen. All have the best optimum known before as their
 # rival: what comes of them does not depend on how many are solved at a time.
 TURN = 8
 # An optimum is chosen as if it were so much worse, as a share, for each turn it had; none further above the best.
 WEARY, NEAR = 0.05, 1.2
-# What is lower by less than the first is no gain, by less than the second the same optimum.
-GAIN, SAME = 1e-3, 1e-4
+# What is lower by a smaller share is no gain.
+GAIN = 1e-3
 
 
 @dataclass
@@ -130,4 +131,4 @@ def _objective(result: SolverResult) -> float:
 
 
 def _same(one: SolverResult, other: SolverResult) -> bool:
-    return abs(one.objective - other.objective) <= SAME * one.objective
+    return abs(one.objective - other.objective) <= SAME_OPTIMUM * one.objective

@@ -90,6 +90,7 @@ def repertoire(
     deadline: float,
     say: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
+    seeds: int = 0,
 ) -> Repertoire | None:
     """Return what postures allow; None if none was found at one end.
 
@@ -100,6 +101,7 @@ def repertoire(
         deadline: ``time.monotonic`` value past which the search stops.
         say: hears of progress.
         postures: solver for the problem's team, to be used again; None: one is made.
+        seeds: postures that are searched from, at least; fewer than moves or ``SEEDS`` are not.
     """
     task, rng = problem.task, np.random.default_rng(seed)
     if postures is None:
@@ -107,14 +109,14 @@ def repertoire(
         began = time.monotonic()
         postures = PostureSolver(problem.team, task, say)
         deadline += time.monotonic() - began
-    count = max(SEEDS, most)
+    count = max(SEEDS, most, seeds)
     for attempt in range(ROUNDS):
         if time.monotonic() > deadline:
             break
         if say:
             say(f"postures at both ends, from {count} seeds" + (" more" if attempt else ""))
-        seeds = [seed_coordinates(problem, task.start, rng if attempt or i else None) for i in range(count)]
-        first, last = _ends(postures, problem, seeds, deadline)
+        scattered = [seed_coordinates(problem, task.start, rng if attempt or i else None) for i in range(count)]
+        first, last = _ends(postures, problem, scattered, deadline)
         if first and last:
             return Repertoire(tuple(first), tuple(last), find_moves(problem, postures, first, last, most))
     return None
