@@ -17,8 +17,8 @@ constexpr double kWorthSkipping = 0.1;
 // Of those tried (0.1 to 1e5) 0.5 to 30 do alike.
 constexpr double kMostDelta = 10.0;
 constexpr int kMostRefinements = 5;
-// Residuals of the linear system at which refinement stops, relative to the right-hand side. With 1e-9 for the first the
-// iterations are as many and take 8 % longer.
+// Residuals of the linear system at which refinement stops, relative to the right-hand side. With 1e-9 for the first
+// there are as many iterations, which take 8 % longer.
 constexpr double kDualResidual = 1e-6, kPrimalResidual = 1e-2;
 
 double largest(const Vector& v) {
