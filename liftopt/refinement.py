@@ -156,7 +156,12 @@ def rivals(plans: Sequence[Plan], best: Plan, accuracy: Accuracy) -> list[Plan]:
 
 def is_known(objective: float, plans: Sequence[Plan]) -> bool:
     """Return whether an optimum with that objective is among those on the same mesh."""
-    return any(abs(objective - plan.result.objective) <= SAME_OPTIMUM * objective for plan in plans)
+    return any(same_optimum(objective, plan.result.objective) for plan in plans)
+
+
+def same_optimum(objective: float, other: float) -> bool:
+    """Return whether two objectives on one mesh are of the same optimum."""
+    return abs(objective - other) <= SAME_OPTIMUM * objective
 
 
 def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:

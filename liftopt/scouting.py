@@ -19,7 +19,7 @@ from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
-from liftopt.refinement import MESH, QUICKEST, SAME_OPTIMUM, is_known
+from liftopt.refinement import MESH, QUICKEST, is_known, same_optimum
 from liftopt.variations import vary
 
 if TYPE_CHECKING:
@@ -99,5 +99,5 @@ def _unseen(tried: Sequence[tuple[Start, SolverResult]]) -> float:
     It is about the share of the starts that led where no other did (Good, Biometrika 40, 237-264, 1953).
     """
     found = sorted(result.objective for _, result in tried if result.converged)
-    apart = [True, *(high - low > SAME_OPTIMUM * high for low, high in pairwise(found)), True]
+    apart = [True, *(not same_optimum(high, low) for low, high in pairwise(found)), True]
     return sum(before and after for before, after in pairwise(apart)) / max(1, len(found))

@@ -9,7 +9,7 @@ better optimum about as often for each iteration of the solver: once in a thousa
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,7 @@ from liftopt.collocation.postures import PostureSolver
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.multistart import solve_each
-from liftopt.refinement import SAME_OPTIMUM
+from liftopt.refinement import same_optimum
 
 # Variations of one optimum that are solved before the next is chosen. All have the best optimum known before as their
 # rival: what comes of them does not depend on how many are solved at a time.
@@ -74,9 +74,9 @@ def vary(
 
     def varied(result: SolverResult) -> _Varied:
         x, kinematics = result.x, postures.kinematics
-        kinds: tuple[Callable[[], Iterator[Start]], ...] = (
+        kinds: tuple[Callable[[], Iterable[Start]], ...] = (
             lambda: mirrored(problem, x),
-            lambda: iter(detours(problem, kinematics, x, by, deadline)),
+            lambda: detours(problem, kinematics, x, by, deadline),
             lambda: _again_and_again(lambda: other_ways(problem, kinematics, x, rng, deadline)),
         )
         return _Varied(result, _in_turns(kinds))
@@ -91,13 +91,12 @@ def vary(
         starts = [start for _, start in zip(range(TURN), chosen.left, strict=False)]
         chosen.turns += 1
         chosen.exhausted = len(starts) < TURN
-        rival = best
-        for start, result in zip(
-            starts, solve_each(solvers, [(s, rival) for s in starts], deadline, problem), strict=True
-        ):
+        results = solve_each(solvers, [(start, best) for start in starts], deadline, problem)
+        for start, result in zip(starts, results, strict=True):
             yield start, result
             since += 1
-            if not result.converged or any(_same(result, entry.result) for entry in known):
+            is_known = any(same_optimum(result.objective, entry.result.objective) for entry in known)
+            if not result.converged or is_known:
                 continue
             known.append(varied(result))
             if result.objective < (1 - GAIN) * best.objective:
@@ -105,19 +104,20 @@ def vary(
             best = min(best, result, key=_objective)
 
 
-def _in_turns(kinds: Sequence[Callable[[], Iterator[Start]]]) -> Iterator[Start]:
+def _in_turns(kinds: Sequence[Callable[[], Iterable[Start]]]) -> Iterator[Start]:
     """Yield one of each kind after the other, each kind made when it is its turn."""
-    made: list[Iterator[Start]] = []
-    for kind in kinds:
-        made.append(kind())
-        if (start := next(made[-1], None)) is not None:
-            yield start
-    while made:
-        for kind_left in list(made):
+    left = [_when_needed(kind) for kind in kinds]
+    while left:
+        for kind_left in list(left):
             if (start := next(kind_left, None)) is None:
-                made.remove(kind_left)
+                left.remove(kind_left)
             else:
                 yield start
+
+
+def _when_needed(make: Callable[[], Iterable[Start]]) -> Iterator[Start]:
+    """Yield what is made, made when the first is asked for."""
+    yield from make()
 
 
 def _again_and_again(make: Callable[[], list[Start]]) -> Iterator[Start]:
@@ -128,7 +128,3 @@ def _again_and_again(make: Callable[[], list[Start]]) -> Iterator[Start]:
 
 def _objective(result: SolverResult) -> float:
     return result.objective
-
-
-def _same(one: SolverResult, other: SolverResult) -> bool:
-    return abs(one.objective - other.objective) <= SAME_OPTIMUM * one.objective

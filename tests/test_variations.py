@@ -1,4 +1,4 @@
-"""Variations: made-up solvers tell in which order optima are varied and when it ends; Pinocchio what comes of it."""
+"""Variations: made-up solvers tell in which order optima are varied and when it ends."""
 
 from __future__ import annotations
 

@@ -11,19 +11,18 @@ import numpy.typing as npt
 
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.guess import Start
-from liftopt.collocation.inverse_kinematics import InverseKinematics
+from liftopt.collocation.inverse_kinematics import FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.collocation.layout import OBJECT_SIZE
-from liftopt.collocation.moves import apart, quintic
+from liftopt.collocation.moves import apart, further, keep_different, quintic
 from liftopt.collocation.postures import Posture, PostureSolver, seed_coordinates
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.transfer import nearest_controls
 
 Array = npt.NDArray[np.float64]
 # Postures searched from so many seeds, and so many kept whose links are further apart than this [m].
 SEEDS, MOST, SAME = 16, 8, 0.1
 # Share of the time to get there, and to come back.
 THERE = 0.4
-# Iterations of inverse kinematics from one knot to the next, for those who follow.
-FOLLOWING = 2
 # Of a motion by way of a posture whose objective is above so many times that of the motion as it is, nothing came.
 TOO_HIGH = 16.0
 
@@ -41,13 +40,11 @@ def rests(problem: Problem, postures: PostureSolver, rng: np.random.Generator, d
     seeds = [seed_coordinates(problem, anywhere, rng if n else None) for n in range(SEEDS)]
     found = [posture for posture in postures.search(anywhere, seeds, deadline) if posture]
     found.sort(key=lambda posture: posture.cost)
-    kept: list[int] = []
-    if found:
-        q, agents = np.array([posture.coordinates for posture in found]), problem.team.agents
-        between = np.max([apart(agent, q[:, problem.layout.columns(i)]) for i, agent in enumerate(agents)], axis=0)
-        for n in range(len(found)):
-            if len(kept) < MOST and (between[n, kept] > SAME).all():
-                kept.append(n)
+    if not found:
+        return []
+    q, agents = np.array([posture.coordinates for posture in found]), problem.team.agents
+    between = np.max([apart(agent, q[:, problem.layout.columns(i)]) for i, agent in enumerate(agents)], axis=0)
+    kept = keep_different(range(len(found)), further(between, SAME), MOST)
     return [found[n] for n in kept]
 
 
@@ -65,8 +62,8 @@ def detours(
     """
     if not by:
         return []
-    layout, basis, agents = problem.layout, problem.mesh.basis[0], problem.team.agents
-    here = basis @ x[layout.control]
+    layout, agents = problem.layout, problem.team.agents
+    here = problem.mesh.basis[0] @ x[layout.control]
     share = quintic(np.minimum(1.0, np.minimum(problem.mesh.phase, 1.0 - problem.mesh.phase) / THERE))
     jobs = [(n, leader) for n in range(len(by)) for leader in range(len(agents))]
     leads = np.zeros((len(jobs), here.shape[1]), dtype=bool)
@@ -78,12 +75,11 @@ def detours(
     last = np.tile(here[0], (len(jobs), 1))
     for there in way:
         seeds = np.where(leads, there, last)
-        last = kinematics.reach(seeds[:, -OBJECT_SIZE:], seeds, deadline, most=FOLLOWING).coordinates
+        last = kinematics.reach(seeds[:, -OBJECT_SIZE:], seeds, deadline, most=FOLLOWING_ITERATIONS).coordinates
         there[:] = np.where(leads, there, last)
-    changed, (lower, upper) = np.tile(x, (len(jobs), 1)), problem.bounds()
-    control = np.einsum("ck,kbn->bcn", np.linalg.pinv(basis), way)
-    changed[:, layout.control] = np.clip(control, lower[layout.control], upper[layout.control])
-    objective, most = Batch(problem).objective(changed), TOO_HIGH * Batch(problem).objective(x[None])[0]
+    changed, batch = np.tile(x, (len(jobs), 1)), Batch(problem)
+    changed[:, layout.control] = nearest_controls(problem, way)
+    objective, most = batch.objective(changed), TOO_HIGH * batch.objective(x[None])[0]
     return [
         Start(f"{agents[leader].name} by way of posture {n + 1}", changed[job])
         for job, (n, leader) in enumerate(jobs)

@@ -28,8 +28,8 @@ SAME = 0.03
 # best was as good with 12 seeds as with 16, and 2 % worse in the mean with 8.
 SEEDS, ROUNDS = 12, 3
 NAIVE_FORCE = 10.0
-# A joint that is at a limit for this share of the time, to this [rad], is pressed against it; a full turn may miss the
-# other end of its range by so much [rad].
+# A joint that is at a limit for this share of the time, to this [rad], is pressed against it; where it is turned to it
+# may miss its range by so much [rad].
 PRESSED_SHARE, PRESSED, MISSED = 0.2, 0.01, 0.6
 
 

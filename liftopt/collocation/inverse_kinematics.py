@@ -21,6 +21,8 @@ Array = npt.NDArray[np.float64]
 CLOSED = 1e-6  # [m]
 # A seed that is not closed by then seldom closes.
 CLOSING_ITERATIONS = 20
+# From one knot to the next along a path.
+FOLLOWING_ITERATIONS = 2
 LONGEST_STEP = 0.6  # [rad]
 DAMPING, EASE, TIGHTEN, STUCK = 1e-3, 0.2, 8.0, 1e6
 # Damping falls no lower: two stretched arms leave the gaps nearly dependent.
@@ -67,6 +69,8 @@ class InverseKinematics:
         rows = np.concatenate([*closure, *(np.arange(b.rows.start, b.rows.stop) for b in keep_in)])
         self._batch = Batch(problem, rows)
         self._columns = problem.layout.control[0]
+        free = problem.at_pose(np.full(OBJECT_SIZE, np.nan)).bounds()
+        self._anywhere = tuple(bound[self._columns] for bound in free)
 
     def reach(
         self, pose: Array, seeds: Array, deadline: float, *, most: int, any_angle: bool = False, anywhere: bool = False
@@ -115,8 +119,7 @@ class InverseKinematics:
 
     def _bounds(self, pose: Array, any_angle: bool) -> tuple[Array, Array]:
         """Return lower and upper bounds (B, n) with the object at ``pose`` (B, 6), NaN where it is free."""
-        free = self.problem.at_pose(np.full(OBJECT_SIZE, np.nan)).bounds()
-        lower, upper = (np.tile(bound[self._columns], (len(pose), 1)) for bound in free)
+        lower, upper = (np.tile(bound, (len(pose), 1)) for bound in self._anywhere)
         for bound in (lower, upper):
             bound[:, -OBJECT_SIZE:] = np.where(np.isnan(pose), bound[:, -OBJECT_SIZE:], pose)
         if any_angle:

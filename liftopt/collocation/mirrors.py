@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.collocation.guess import Start
+from liftopt.collocation.guess import MISSED, Start
 from liftopt.collocation.problem import Problem
 from liftopt.multibody.agent import Agent
 
@@ -16,8 +16,6 @@ Array = npt.NDArray[np.float64]
 # A joint that is nearly straight [rad] has no other way to bend; axes with less than this between them are parallel.
 STRAIGHT, PARALLEL = 0.15, 1e-6
 HALF_TURN, WHOLE_TURN = (np.pi, -np.pi), (0.0, 2 * np.pi, -2 * np.pi)
-# Joints may be outside their ranges by so much [rad] before they are brought back.
-MISSED = 0.6
 
 
 def mirrored(problem: Problem, x: Array) -> Iterator[Start]:

@@ -7,7 +7,7 @@ a few of each stand for all their combinations.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -185,12 +185,25 @@ def apart(agent: Agent, q: Array) -> Array:
 
 def _different(pairs: npt.NDArray[np.int64], rank: Array, between: list[Array], most: int) -> list[int]:
     """Return which moves rank first of which no two are the same; ``between``: how far the postures are apart."""
+
+    def differs(n: int, kept: list[int]) -> bool:
+        (i, j), (first, last) = pairs[n], pairs[kept].T
+        return bool((np.maximum(between[0][i, first], between[1][j, last]) > SAME).all())
+
+    return keep_different(np.argsort(rank, kind="stable"), differs, most)
+
+
+def keep_different(order: Iterable[int], differs: Callable[[int, list[int]], bool], most: int) -> list[int]:
+    """Return up to ``most`` of ``order``, each of which ``differs`` from all that were kept before it."""
     kept: list[int] = []
-    for n in np.argsort(rank, kind="stable"):
-        i, j = pairs[n]
-        first, last = pairs[kept].T if kept else np.zeros((2, 0), np.int64)
-        if (np.maximum(between[0][i, first], between[1][j, last]) > SAME).all():
-            kept.append(int(n))
+    for n in order:
         if len(kept) == most:
             break
+        if differs(n, kept):
+            kept.append(int(n))
     return kept
+
+
+def further(between: Array, same: float) -> Callable[[int, list[int]], bool]:
+    """Return whether one is further than ``same`` from all others, by how far each two are apart, (B, B)."""
+    return lambda n, others: bool((between[n, others] > same).all())

@@ -13,17 +13,18 @@ import numpy.typing as npt
 
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.guess import Start
-from liftopt.collocation.inverse_kinematics import CLOSING_ITERATIONS, InverseKinematics
+from liftopt.collocation.inverse_kinematics import CLOSING_ITERATIONS, FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.collocation.layout import OBJECT_SIZE
-from liftopt.collocation.moves import apart
+from liftopt.collocation.moves import apart, further, keep_different
 from liftopt.collocation.postures import scattered
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.transfer import nearest_controls
 
 Array = npt.NDArray[np.float64]
 # Postures tried at each of three times, and ways of each agent that are kept.
 SEEDS, MOST = 8, 6
-# Iterations of inverse kinematics from one knot to the next, and gap [m] that they may leave: the solver closes it.
-FOLLOWING, GAP = 2, 0.02
+# Gap [m] that inverse kinematics may leave: the solver closes it.
+GAP = 0.02
 # Ways whose links are nearer than this [m] at all three times are the same.
 SAME = 0.06
 
@@ -40,27 +41,24 @@ def other_ways(
         rng: where the postures come from.
         deadline: ``time.monotonic`` value past which inverse kinematics stops.
     """
-    layout, basis, agents = problem.layout, problem.mesh.basis[0], problem.team.agents
-    here = basis @ x[layout.control]
+    layout, agents = problem.layout, problem.team.agents
+    here = problem.mesh.basis[0] @ x[layout.control]
     middle = len(here) // 2
     way = _followed(problem, kinematics, here, np.repeat([0, middle, len(here) - 1], SEEDS), rng, deadline)
     if not way.size:
         return []
-    control, (lower, upper) = np.einsum("ck,kbn->bcn", np.linalg.pinv(basis), way), problem.bounds()
-    batch, found = Batch(problem), []
+    control, batch, found = nearest_controls(problem, way), Batch(problem), []
     for i, agent in enumerate(agents):
         own = layout.control[:, layout.columns(i)]
         changed = np.tile(x, (len(control), 1))
-        changed[:, own] = np.clip(control[:, :, layout.columns(i)], lower[own], upper[own])
+        changed[:, own] = control[:, :, layout.columns(i)]
         speed = np.abs(np.einsum("sc,bcn->bsn", problem.mesh.slope, changed[:, own])) / problem.task.duration
         excess = np.maximum(0.0, speed - agent.limits.velocity).max(axis=1).sum(axis=1)
         # The first row is the motion as it is, which is no other way.
         q = np.concatenate([here[:, None], way], axis=1)[:, :, layout.columns(i)]
         between = np.max([apart(agent, q[k]) for k in (0, middle, -1)], axis=0)
-        kept = [0]
-        for n in np.argsort(batch.terms(changed)[i] * (1 + excess), kind="stable") + 1:
-            if len(kept) <= MOST and (between[n, kept] > SAME).all():
-                kept.append(int(n))
+        order = np.argsort(batch.terms(changed)[i] * (1 + excess), kind="stable") + 1
+        kept = keep_different([0, *order], further(between, SAME), MOST + 1)
         found.append([Start(f"{agent.name} another way {n}", changed[k - 1]) for n, k in enumerate(kept[1:], 1)])
     return [own[n] for n in range(MOST) for own in found if n < len(own)]
 
@@ -85,14 +83,15 @@ def _followed(
     at, first = at[closed], reach.coordinates[closed]
     way = np.empty((len(here), len(at), here.shape[1]))
     way[at, np.arange(len(at))] = first
-    held, who, sign, last = np.full(len(at), True), np.tile(np.arange(len(at)), 2), np.repeat([1, -1], len(at)), first
-    last = np.tile(first, (2, 1))
+    # From there each is followed in both directions at once.
+    held, last = np.full(len(at), True), np.tile(first, (2, 1))
+    who, sign = np.tile(np.arange(len(at)), 2), np.repeat([1, -1], len(at))
     for step in range(1, len(here)):
         knot = at[who] + sign * step
         inside = (knot >= 0) & (knot < len(here))
         who, sign, last, knot = who[inside], sign[inside], last[inside], knot[inside]
         if len(who):
-            reach = kinematics.reach(here[knot, -OBJECT_SIZE:], last, deadline, most=FOLLOWING)
+            reach = kinematics.reach(here[knot, -OBJECT_SIZE:], last, deadline, most=FOLLOWING_ITERATIONS)
             last = way[knot, who] = reach.coordinates
             held[who[~(reach.shortfall < GAP)]] = False
     return way[:, held]

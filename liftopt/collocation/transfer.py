@@ -49,6 +49,18 @@ def nearest(problem: Problem, spline: RestToRestSpline, phase: Array, coordinate
     return problem.pack(control, interpolate_linear(force, spline.phase))
 
 
+def nearest_controls(problem: Problem, way: Array) -> Array:
+    """Return the control points (B, n_free, n) nearest to motions that are given at the knots, within the bounds.
+
+    Args:
+        problem: whose control points.
+        way: (K, B, n) all moving joints and the object's six coordinates [rad, m].
+    """
+    lower, upper = (bound[problem.layout.control] for bound in problem.bounds())
+    control = np.einsum("ck,kbn->bcn", np.linalg.pinv(problem.mesh.basis[0]), way)
+    return np.asarray(np.clip(control, lower, upper))
+
+
 def transfer_multipliers(problem: Problem, multipliers: Multipliers, other: Problem) -> Multipliers:
     """Return the multipliers of one mesh on another, where they are about those of the same motion.
 
