@@ -39,6 +39,7 @@ SAME_MOTION = 0.4  # [rad, m]
 SURE = "ipopt"  # where another solver finds nothing
 QUICKEST = ("banded", SURE)
 MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
+AFRESH = ", afresh"  # after the name of a start of which the multipliers were left behind
 SAME_OPTIMUM = 1e-4  # relative difference of two objectives
 
 
@@ -71,6 +72,7 @@ def neighbour(
     say: Say,
     rival: SolverResult | None = None,
     told: Callable[[str, SolverResult], None] | None = None,
+    afresh: bool = False,
 ) -> Plan | None:
     """Return the optimum that another one leads to on another mesh; None if no solver converges in time.
 
@@ -83,12 +85,14 @@ def neighbour(
         say: hears of kernels that are compiled.
         rival: an optimum on the other mesh; where nothing lower is in sight there is none either.
         told: hears of the optimum, or that the rival stays the best, with the name of the start.
+        afresh: start from the motion alone, not from its multipliers as well.
     """
     spline, scenario = RestToRestSpline(intervals), plan.scenario
     problem = workshop.problem(scenario, spline, say)
     start = transfer(plan.problem, plan.spline, plan.result.x, problem, spline)
-    warm = transfer_multipliers(plan.problem, plan.result.multipliers, problem)
+    warm = None if afresh else transfer_multipliers(plan.problem, plan.result.multipliers, problem)
     origin, asked = plan.start.partition(MESH)[0], scenario.solver.intervals
+    origin += AFRESH if afresh else ""
     start_name = origin if intervals == asked else f"{origin}{MESH}{intervals}"
     for name in solvers:
         try:
@@ -165,20 +169,44 @@ def same_optimum(objective: float, other: float) -> bool:
 
 
 def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
-    """Return the best verified optimum that others lead to on so many intervals; None if there is none."""
+    """Return the best verified optimum that others lead to on so many intervals; None if there is none.
+
+    Where an optimum of the coarse mesh is two on the finer one, its multipliers lead to that which presses against the
+    same limits. So the solver starts once more from the motion of the best, without them: of 101 widely varied lifts 10
+    gained by it, up to 9 %.
+    """
     found: list[Plan] = []
     solvers = tuple(dict.fromkeys((search.scenario.solver.name, SURE)))
-    for plan in plans:
-        search.say(f"solving on {intervals} intervals: {plan.start}")
-        best = min((there.result for there in found), key=lambda result: result.objective, default=None)
+
+    def solve(plan: Plan, afresh: bool = False) -> None:
+        search.say(f"solving on {intervals} intervals: {plan.start}{AFRESH if afresh else ''}")
+        best = min(found, key=_objective).result if found else None
         there = neighbour(
-            search.workshop, plan, intervals, solvers, search.deadline, search.say, rival=best, told=search.record
+            search.workshop, plan, intervals, solvers, search.deadline, search.say, best, search.record, afresh
         )
         if there is not None:
             found.append(there)
-    search.plans = sorted(found, key=lambda plan: plan.result.objective)
+
+    for plan in plans:
+        solve(plan)
+    origin = min(found, key=_objective).origin if found else None
+    if origin is not None and (exact := _exact(search, origin)) is not None:
+        solve(exact, afresh=True)
+    search.plans = sorted(found, key=_objective)
     search.say("verifying with Pinocchio")
     return next((plan for plan in search.plans if plan.solved or plan.refinable), None)
+
+
+def _exact(search: Search, plan: Plan) -> Plan | None:
+    """Return an optimum to the tolerance of its scenario, if scouts left it less exact; None if that fails."""
+    solver = search.workshop.solver(plan.problem, plan.scenario, plan.scenario.solver.name, search.say)
+    there = plan.result
+    result = solver.solve(there.x, deadline=search.deadline, warm=there.multipliers, problem=plan.problem)
+    return replace(plan, result=result) if result.converged else None
+
+
+def _objective(plan: Plan) -> float:
+    return plan.result.objective
 
 
 def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:

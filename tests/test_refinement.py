@@ -14,9 +14,9 @@ from liftopt.cli import main
 from liftopt.collocation.solvers.result import BEATEN, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
-from liftopt.lift import lift
+from liftopt.lift import Search, lift
 from liftopt.plan import Plan
-from liftopt.refinement import compared, distance, neighbour, rivals, unmet
+from liftopt.refinement import compared, distance, finer, neighbour, rivals, unmet
 from liftopt.replan import Replanner
 from liftopt.result_reader import load_result
 from liftopt.result_writer import save
@@ -95,6 +95,22 @@ def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Plan) -> None:
     there = neighbour(*given, told=tell)
     assert there is not None
     assert told == [(there.start, BEATEN), (there.start, there.result.status)]
+
+
+def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Plan) -> None:
+    """The oracle is a cold solve of the same motion beside a warm one."""
+    search = Search(coarse.scenario, Workshop(), RestToRestSpline(40), lambda line: None)
+    best = finer(search, [coarse, coarse], 40)
+    assert best is not None and best.solved
+    names = [record.name for record in search.records]
+    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh, N = 40"]
+    x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
+    cold = search.solvers[0].solve(x, deadline=np.inf, problem=best.problem, rival=best.result)
+    warm = neighbour(Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    assert warm is not None and cold.iterations > 1.5 * warm.result.iterations
+    assert abs(search.records[2].iterations - cold.iterations) <= 2
+    led = [result.objective for result in (warm.result, cold) if result.converged]
+    assert best.result.objective == pytest.approx(min(led), rel=1e-9)
 
 
 def test_multipliers_keep_the_sum_over_time(coarse: Plan) -> None:

@@ -160,7 +160,21 @@ PYBIND11_MODULE(_liftopt_banded, module) {
             }
             return py::make_tuple(f, Doubles(static_cast<py::ssize_t>(g.size()), g.data()));
           },
-          py::arg("x"), "Objective and constraint rows at x.");
+          py::arg("x"), "Objective and constraint rows at x.")
+      .def(
+          "row_sizes",
+          [](banded::Nlp& nlp, const Doubles& x) {
+            if (x.size() != nlp.unknowns()) throw std::length_error("an array does not have the problem's size");
+            const Vector none(nlp.rows());
+            Vector sizes(nlp.rows());
+            {
+              py::gil_scoped_release free;
+              nlp.differentiate(x.data(), none.data(), 1.0);
+              nlp.row_sizes(sizes.data());
+            }
+            return Doubles(static_cast<py::ssize_t>(sizes.size()), sizes.data());
+          },
+          py::arg("x"), "The largest term of each constraint row's derivatives at x.");
   py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
       .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("weights"), py::arg("basis"),
            py::arg("control"), py::arg("force"), py::arg("parts"), py::arg("rows"), py::arg("linear"))

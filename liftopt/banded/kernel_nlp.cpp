@@ -1,6 +1,7 @@
 #include "kernel_nlp.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -233,6 +234,25 @@ void KernelNlp::multiply_hessian(const double* x, double* y) {
                                  sum);
     knots_.add_selected(group, columns_, sum, y);
   }
+}
+
+void KernelNlp::row_sizes(double* sizes) const {
+  linear_.row_sizes(sizes);
+  for (int group = 0; group < knots_.groups(); ++group)
+    for (const KnotRow& row : knot_rows_)
+      for (const KnotRow::Term& term : row.terms) {
+        const KernelPart& part = parts_[term.part];
+        for (std::size_t e = 0; e < part.jacobian_row.size(); ++e) {
+          if (part.jacobian_row[e] != term.output) continue;
+          const double* slope = slopes(group) + (first_slope_[term.part] + e) * lanes();
+          for (int l = 0; l < knots_.knots_of(group); ++l) {
+            const int r = row.row[group * lanes() + l];
+            if (r < 0) continue;
+            const double reach = knots_.reach(group, l, part.columns.order(part.jacobian_column[e]));
+            sizes[r] = std::max(sizes[r], std::fabs(term.factor * slope[l]) * reach);
+          }
+        }
+      }
 }
 
 bool KernelNlp::drop_curvature() {

@@ -51,6 +51,7 @@ class KernelNlp : public Nlp {
   void multiply_jacobian(const double* x, double* y) override;
   void multiply_jacobian_transposed(const double* x, double* y) override;
   void multiply_hessian(const double* x, double* y) override;
+  void row_sizes(double* sizes) const override;
   bool drop_curvature() override;
   std::vector<std::pair<int, int>> coupled(const std::vector<std::vector<int>>& blocks) const override;
   std::unique_ptr<Assembly> assembly(const BlockCholesky& storage) const override;

@@ -1,6 +1,7 @@
 #include "knots.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace banded {
@@ -37,6 +38,13 @@ Knots::Knots(int lanes, const Vector& weights, const Vector& basis, std::vector<
       for (int i = 0; i < width_; ++i)
         basis_[((k / lanes_ * kOrders + a) * width_ + i) * lanes_ + k % lanes_] = value(k, a, first_[k] + i);
   }
+}
+
+double Knots::reach(int group, int lane, int order) const {
+  if (order < 0) return 1.0;
+  double most = 0.0;
+  for (int i = 0; i < width_; ++i) most = std::max(most, std::fabs(basis(group)[(order * width_ + i) * lanes_ + lane]));
+  return most;
 }
 
 void Knots::select(int group, const std::vector<PartColumns>& parts, const double* x, double* y) {

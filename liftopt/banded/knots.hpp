@@ -18,6 +18,11 @@ struct PartColumns {
   int first = 0, coordinates = 0;  // of the coordinates of the knot
   std::vector<int> forces;         // of the forces of the knot, -1 for one that is always zero
   std::vector<int> others;         // of the coordinates of the knot
+  // Of an entry of y, as a derivative of coordinates; -1 of a force.
+  int order(int entry) const {
+    const int after = entry - kOrders * coordinates;
+    return after < 0 ? entry / coordinates : after < static_cast<int>(forces.size()) ? -1 : 0;
+  }
   int size() const { return kOrders * coordinates + static_cast<int>(forces.size() + others.size()); }
 };
 
@@ -42,6 +47,9 @@ class Knots {
   const double* weights(int group) const { return weights_.data() + group * lanes_; }
   // (orders, width) vectors.
   const double* basis(int group) const { return basis_.data() + group * kOrders * width_ * lanes_; }
+
+  // The largest weight, without its sign, of an unknown in a knot's derivative of that order; 1 of order -1, a force.
+  double reach(int group, int lane, int order) const;
 
   // The variables of all parts of a group, one part after the other.
   void select(int group, const std::vector<PartColumns>& parts, const double* x, double* y);

@@ -5,7 +5,7 @@
 //     [ H + J^T diag(q + sigma_s) J + diag(sigma_x) + delta   J_E^T ] [ dx        ]   [ r  ]
 //     [ J_E                                                     0   ] [ dlambda_E ] = [ -c ].
 //
-// A penalty gamma J_E^T J_E is added to the upper left block, which changes no solution. For a large gamma that block
+// A penalty J_E^T diag(gamma) J_E is added to the upper left block, which changes no solution. For large gamma it
 // is positive definite exactly where the Hessian is on the null space of J_E (Debreu's lemma), which is the inertia
 // that a descent direction needs, so one Cholesky factorisation finds out; where it fails, delta grows as in Waechter
 // and Biegler (2006), section 3.1. Then dlambda_E = gamma (J_E dx + c) with a few steps of refinement on both
@@ -50,6 +50,7 @@ class Newton {
   void correct(const double* r, const double* c);
   bool try_delta();
   void assemble();
+  void find_penalties();
 
   Nlp& nlp_;
   Condensed condensed_;
@@ -57,6 +58,7 @@ class Newton {
   std::vector<int> held_;
   double delta_ = 0.0, last_delta_ = 0.0;  // now, and the last one that was needed
   double exact_delta_ = 0.0;               // of the last matrix with all of its curvature
+  Vector penalty_;                // of each row, for as long as its bounds stay the same
   Vector row_weight_;             // of the matrix that was factorised
   Vector sigma_rows_, sigma_x_;   // of the matrix without the penalty
   Vector step_, rows_, residual_, row_residual_;

@@ -37,6 +37,9 @@ class Nlp {
   virtual void multiply_jacobian_transposed(const double* x, double* y) = 0;
   virtual void multiply_hessian(const double* x, double* y) = 0;
 
+  // The largest entry of each row of J, without its sign; where several terms make up an entry, the largest of them.
+  virtual void row_sizes(double* sizes) const = 0;
+
   // Leave out of H what outputs and rows add by their own curvature, so that H + J^T diag(squares) J is the matrix of
   // Gauss and Newton, until the next `differentiate`; false where that part is not known.
   virtual bool drop_curvature() { return false; }

@@ -1,6 +1,8 @@
 // A sparse matrix in compressed rows.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "aligned.hpp"
@@ -36,6 +38,12 @@ struct Sparse {
       if (factor == 0.0) continue;
       for (int k = start[r]; k < start[r + 1]; ++k) y[index[k]] += value[k] * factor;
     }
+  }
+
+  // The largest entry of each row without its sign, if it is larger than what is there.
+  void row_sizes(double* sizes) const {
+    for (int r = 0; r < rows; ++r)
+      for (int k = start[r]; k < start[r + 1]; ++k) sizes[r] = std::max(sizes[r], std::fabs(value[k]));
   }
 
   // y += A x where these are the entries on and above the diagonal of a symmetric matrix

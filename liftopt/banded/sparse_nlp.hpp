@@ -13,6 +13,7 @@ class SparseNlp : public Nlp {
   void multiply_jacobian(const double* x, double* y) override { jacobian.multiply(x, y); }
   void multiply_jacobian_transposed(const double* x, double* y) override { jacobian.multiply_transposed(x, y); }
   void multiply_hessian(const double* x, double* y) override { hessian.multiply_symmetric(x, y); }
+  void row_sizes(double* sizes) const override { jacobian.row_sizes(sizes); }
   std::vector<std::pair<int, int>> coupled(const std::vector<std::vector<int>>& blocks) const override;
   std::unique_ptr<Assembly> assembly(const BlockCholesky& storage) const override;
 

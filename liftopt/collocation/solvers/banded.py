@@ -34,14 +34,16 @@ SAFETY = 0.9
 SOLVED = "Solve_Succeeded"
 # Of the barrier parameters tried (0.001 to 10) it takes the fewest iterations from posture pairs and naive starts on 20
 # intervals; on finer meshes, which have more bounds, a smaller one does: of 7 lifts 32 iterations instead of 47 on 80.
-# On 10 intervals variations of optima (``variations.py``) take a fifth less with four times as much.
-COLD = dict(push=1e-2)
-COLD_MU, COLD_INTERVALS = 1.0, 20
+# On 10 intervals variations of optima (``variations.py``) take a fifth less with four times as much. So it falls with
+# the square of the intervals.
+COLD = dict(mu=1.0, push=1e-2)
+MU_INTERVALS = 20
 # A warm start is near the solution: this barrier parameter and this share of the room to the bounds keep it there, and
 # whole Newton steps to begin with find the bounds that become active.
 WARM = dict(mu=1e-5, push=1e-4, predictions=2)
 # From another mesh, where the active bounds differ more: on widely varied lifts, from 10 to 20 intervals, 37 iterations
-# instead of 45. From 1e-3 on some went to another motion.
+# instead of 45. From 1e-3 on some went to another motion. It falls as that of a cold start does: of 9 lifts from 80 to
+# 160 intervals 10 iterations instead of 16.
 INTERPOLATED = WARM | dict(mu=1e-4)
 # Iterations after which a start gives up that has a rival: so many, or so many times what the rival took; more where
 # that has not converged. Of 544 starts of widely varied lifts that converged, half took 43 and 90 % took 112.
@@ -82,7 +84,7 @@ class Banded:
         self._parameters = problem.parameters.copy()
         self._current: Problem | None = None
         intervals = len(problem.mesh.phase) - 1
-        self._cold_mu = COLD_MU * (COLD_INTERVALS / intervals) ** 2 if intervals else COLD_MU
+        self._mu_share = (MU_INTERVALS / intervals) ** 2 if intervals else 1.0
         self._kernels = wide_kernels(problem, say)
         if self._kernels:
             self._nlp = kernel_nlp(_liftopt_banded, problem, self._kernels)
@@ -111,10 +113,11 @@ class Banded:
         more: dict[str, Any] = {}
         if rival is not None:
             more = {"rival": rival.objective if rival.converged else np.inf, "max_iterations": self._patience(rival)}
-        cold = COLD | {"mu": self._cold_mu} | more
+        cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
-            arguments = (INTERPOLATED if warm.interpolated else WARM) | more | {"warm": (warm.x, warm.g)}
+            near = INTERPOLATED | {"mu": self._mu_share * INTERPOLATED["mu"]} if warm.interpolated else WARM
+            arguments = near | more | {"warm": (warm.x, warm.g)}
         found = self._run(x0, problem, deadline, arguments)
         if warm is not None and found["status"] not in (SOLVED, STOPPED, BEATEN):
             # What was a neighbour in the data need not be one in its solution.

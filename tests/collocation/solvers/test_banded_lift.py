@@ -14,7 +14,7 @@ from liftopt.collocation.guess import PostureSolver, Start, blend, naive_start, 
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions, elimination_order
-from liftopt.collocation.solvers.banded_nlp import knot_rows
+from liftopt.collocation.solvers.banded_nlp import callback_nlp, knot_rows
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -143,6 +143,30 @@ def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Start]
     np.testing.assert_allclose(one.objective, other.objective, rtol=1e-9)
     np.testing.assert_allclose(one.x, other.x, rtol=0, atol=1e-5)
     np.testing.assert_allclose(one.multipliers.g, other.multipliers.g, rtol=0, atol=1e-3)
+
+
+def test_rows_are_measured_as_casadi_has_them(small_lift: Problem, banded: Banded) -> None:
+    """Closure's entries have one term each, others up to three, of which the kernels' measure is the largest."""
+    x = np.random.default_rng(2).normal(size=small_lift.layout.n_x)
+    exact = np.abs(small_lift.nlp.jac_g(x, small_lift.parameters)[1].full()).max(axis=1)
+    slow = callback_nlp(extension, small_lift.nlp, small_lift.parameters)
+    np.testing.assert_allclose(slow.row_sizes(x), exact, rtol=1e-12)
+    banded.evaluate(x, small_lift)
+    sizes = banded._nlp.row_sizes(x)
+    closure = np.concatenate(
+        [np.arange(len(exact))[block.rows] for block in small_lift.constraints.blocks if block.name == "closure"]
+    )
+    np.testing.assert_allclose(sizes[closure], exact[closure], rtol=1e-12)
+    assert (exact <= 3 * sizes * (1 + 1e-12)).all()
+
+
+def test_linear_systems_of_a_fine_mesh_need_hardly_any_refinement() -> None:
+    """Closure acts on positions, balance on accelerations: one penalty for both takes two each iteration."""
+    problem = problem_of(load_scenario("table5"), 80)
+    solver = Banded(problem)
+    result = solver.solve(posture_pair(problem), deadline=soon())
+    assert result.converged and kkt_error(problem, result.x, result.multipliers).error <= TOLERANCE
+    assert solver.details["refinements"] < result.iterations
 
 
 def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts: list[Start]) -> None:
