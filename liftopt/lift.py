@@ -34,7 +34,7 @@ Say = Callable[[str], None]
 POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
 SOLVING_SHARE = 0.7
 WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
-# Postures searched from, for each start tried on half the intervals: of 44 widely varied lifts, each with two seeds, 86
+# Postures searched from, for each start tried on a coarse mesh: of 44 widely varied lifts, each with two seeds, 86
 # of 88 came within 5 % of what takes five times as long, with one 80 of 86, with one and twice the starts 85 of 88.
 SEEDS_A_TRY = 2
 WIDER = 4  # times as many starts are tried before a lift that has postures at both ends counts as impossible

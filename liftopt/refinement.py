@@ -39,6 +39,9 @@ SAME_MOTION = 0.4  # [rad, m]
 SURE = "ipopt"  # where another solver finds nothing
 QUICKEST = ("banded", SURE)
 MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
+# The finest mesh that starts are tried on. Of 26 widely varied lifts on 80 intervals the optimum found from 10, 20 and
+# 40 was 1.4, 0.7 and 0.7 % above the best of the three in the geometric mean, in 2.7, 3.5 and 6.1 s.
+FINEST_SCOUTS = 20
 AFRESH = ", afresh"  # after the name of a start of which the multipliers were left behind
 SAME_OPTIMUM = 1e-4  # relative difference of two objectives
 
@@ -168,8 +171,8 @@ def same_optimum(objective: float, other: float) -> bool:
     return abs(objective - other) <= SAME_OPTIMUM * objective
 
 
-def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
-    """Return the best verified optimum that others lead to on so many intervals; None if there is none.
+def taken(search: Search, plans: Sequence[Plan], intervals: int) -> list[Plan]:
+    """Return the optima that others lead to on so many intervals, the best first; what promises none better is left.
 
     Where an optimum of the coarse mesh is two on the finer one, its multipliers lead to that which presses against the
     same limits. So the solver starts once more from the motion of the best, without them: of 101 widely varied lifts 10
@@ -192,9 +195,29 @@ def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
     origin = min(found, key=_objective).origin if found else None
     if origin is not None and (exact := _exact(search, origin)) is not None:
         solve(exact, afresh=True)
-    search.plans = sorted(found, key=_objective)
+    return sorted(found, key=_objective)
+
+
+def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
+    """Return the best verified optimum that others lead to on so many intervals; None if there is none.
+
+    Meshes between, each twice as fine, are solved on the way: from the one before, an optimum takes a third of the
+    iterations it takes from a motion alone.
+    """
+    for between in meshes_below(intervals):
+        if plans and between > plans[0].spline.intervals:
+            plans = taken(search, plans, between)
+    search.plans = taken(search, plans, intervals)
     search.say("verifying with Pinocchio")
     return next((plan for plan in search.plans if plan.solved or plan.refinable), None)
+
+
+def meshes_below(intervals: int) -> list[int]:
+    """Return meshes of half as many intervals, again and again, the coarsest first."""
+    meshes = [(intervals + 1) // 2]
+    while meshes[0] > FINEST_SCOUTS:
+        meshes.insert(0, (meshes[0] + 1) // 2)
+    return meshes
 
 
 def _exact(search: Search, plan: Plan) -> Plan | None:

@@ -123,7 +123,7 @@ class Solver:
     name: Annotated[str, Choice("interior point that solves it", ("banded", "ipopt"))] = "banded"
     intervals: Annotated[int, Whole("spline intervals N", 6, 400)] = 20
     starts: Annotated[int, Whole("starts of which the best is kept", 1, 64)] = 4
-    tries: Annotated[int, Whole("starts tried first on half the intervals, 0: none", 0, 512)] = 48
+    tries: Annotated[int, Whole("starts tried first on a coarser mesh, 0: none", 0, 512)] = 48
     tolerance: Annotated[float, Number("KKT error at which a start has converged", "", 1e-10, 1e-3)] = 1e-6
     workers: Annotated[int, Whole("starts at a time; IPOPT takes one", 1, 64)] = 2
     seed: Annotated[int, Whole("seed of the random starts", 0, 2**32 - 1)] = 0

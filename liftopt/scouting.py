@@ -1,8 +1,9 @@
-"""Scouting: many starts on half the intervals, of which the best optima are taken to the mesh that was asked for.
+"""Scouting: many starts on a coarse mesh, of which the best optima are taken to the mesh that was asked for.
 
-The coarse mesh costs half as much a solve, and an optimum of it is a warm start on the fine one. It tells good motions
-from bad ones: of 24 starts of each of 53 widely varied lifts, the four with the best optima on eight intervals led to
-within 5 % of the best of all 24 in 50 lifts, the four most promising ones (``moves.py``) in 32.
+The coarse mesh has half as many intervals, or half of that again until they are few (``refinement.meshes_below``). A
+solve costs less there, and an optimum of it is a warm start on a finer one. It tells good motions from bad ones: of 24
+starts of each of 53 widely varied lifts, the four with the best optima on eight intervals led to within 5 % of the best
+of all 24 in 50 lifts, the four most promising ones (``moves.py``) in 32.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
-from liftopt.refinement import MESH, QUICKEST, is_known, same_optimum
+from liftopt.refinement import MESH, QUICKEST, is_known, meshes_below, same_optimum
 from liftopt.variations import vary
 
 if TYPE_CHECKING:
@@ -41,14 +42,14 @@ ROUGH = 1e-5
 
 
 def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
-    """Return the optima on half the intervals that may lead to the best one, the best first; none if none was found.
+    """Return the optima on a coarse mesh that may lead to the best one, the best first; none if none was found.
 
     Args:
         search: on the mesh that was asked for.
         found: where to start from.
         tries: starts to be tried.
     """
-    scenario, intervals = search.scenario, (search.spline.intervals + 1) // 2
+    scenario, intervals = search.scenario, meshes_below(search.spline.intervals)[0]
     if intervals < FEWEST or not tries:
         return []
     spline = RestToRestSpline(intervals)

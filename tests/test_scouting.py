@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from liftopt.collocation.guess import Repertoire, Start, repertoire
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.lift import Search
-from liftopt.refinement import SAME_OPTIMUM
+from liftopt.refinement import FINEST_SCOUTS, SAME_OPTIMUM, meshes_below
 from liftopt.scenario import load_scenario
 from liftopt.scouting import PROMISING, ROUGH, _unseen, scout
 from liftopt.variations import TURN
@@ -39,6 +42,29 @@ def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() ->
         assert plan.spline.intervals == 10 and plan.start.endswith(", N = 10")
         assert plan.verification.kkt_error <= ROUGH * plan.result.objective
     assert search.notes[-1].endswith(f"the best {len(plans)} were taken to 20")
+
+
+@given(intervals=st.integers(12, 400))
+def test_meshes_below_double_up_to_the_one_asked_for(intervals: int) -> None:
+    meshes = [*meshes_below(intervals), intervals]
+    assert len(meshes) > 1 and meshes[0] <= FINEST_SCOUTS
+    assert meshes[0] > FINEST_SCOUTS / 2 or len(meshes) == 2
+    for coarse, fine in pairwise(meshes):
+        assert fine <= 2 * coarse <= fine + 1
+
+
+def test_a_fine_mesh_is_reached_from_mesh_to_mesh() -> None:
+    search, _ = _search("solver.starts=2", "solver.tries=4", "solver.intervals=80", intervals=80)
+    plan = search.run()
+    assert plan.solved
+    chain = [plan]
+    while chain[-1].origin is not None:
+        chain.append(chain[-1].origin)
+    assert [link.spline.intervals for link in chain] == [80, 40, 20]
+    assert all(later.result.iterations < 30 for later in chain[:-1])
+    assert any(" variations on 20 intervals led to" in note for note in search.notes)
+    told = [record.name for record in search.records]
+    assert any(name.endswith(", N = 40") for name in told) and not told[-1].endswith(", N = 80")
 
 
 def test_no_scouts_where_half_the_mesh_is_too_coarse_or_none_are_asked_for() -> None:
