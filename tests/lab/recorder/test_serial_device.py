@@ -67,13 +67,15 @@ def test_a_device_that_vanishes_and_comes_back_is_read_on(arduino: Any, events: 
     arduino.send("\n1,1,1\n2,2,")
     assert isinstance(next(events), Reading)
     time.sleep(0.3)  # let the half line be read before the device goes
-    threading.Timer(0.1, arduino.unplug).start()
+    unplugging = threading.Timer(0.1, arduino.unplug)
+    unplugging.start()
     half, lost = next(events), next(events)
     assert isinstance(half, Garbage)
     assert half.text == "'2,2,'"
     assert isinstance(lost, Connection)
     assert not lost.up
     assert lost.reason
+    unplugging.join()  # the loss is noticed before the thread is done with the old device
     arduino.plug_in()
     back = next(events)
     assert isinstance(back, Connection)
