@@ -42,8 +42,8 @@ MU_INTERVALS = 20
 # whole Newton steps to begin with find the bounds that become active.
 WARM = dict(mu=1e-5, push=1e-4, predictions=2)
 # From another mesh, where the active bounds differ more: on widely varied lifts, from 10 to 20 intervals, 37 iterations
-# instead of 45. From 1e-3 on some went to another motion. It falls as that of a cold start does: of 9 lifts from 80 to
-# 160 intervals 10 iterations instead of 16.
+# instead of 45. From 1e-3 on some went to another motion. On finer meshes it falls as that of a cold start does: of 9
+# lifts from 80 to 160 intervals 10 iterations instead of 16.
 INTERPOLATED = WARM | dict(mu=1e-4)
 # Iterations after which a start gives up that has a rival: so many, or so many times what the rival took; more where
 # that has not converged. Of 544 starts of widely varied lifts that converged, half took 43 and 90 % took 112.
@@ -116,7 +116,8 @@ class Banded:
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
-            near = INTERPOLATED | {"mu": self._mu_share * INTERPOLATED["mu"]} if warm.interpolated else WARM
+            share = min(1.0, self._mu_share)
+            near = INTERPOLATED | {"mu": share * INTERPOLATED["mu"]} if warm.interpolated else WARM
             arguments = near | more | {"warm": (warm.x, warm.g)}
         found = self._run(x0, problem, deadline, arguments)
         if warm is not None and found["status"] not in (SOLVED, STOPPED, BEATEN):
