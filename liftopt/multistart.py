@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from queue import SimpleQueue
 
 from liftopt.collocation.guess import Start, recombined, turned
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.abreast import abreast
 from liftopt.collocation.solvers.result import Solver, SolverResult
 
 # One start of several may take this share of the time that is left.
@@ -65,29 +64,15 @@ def solve_each(
     Raises:
         SolverError: a solver cannot run at all.
     """
-    idle: SimpleQueue[Solver] = SimpleQueue()
-    for solver in solvers:
-        idle.put(solver)
 
-    def solve(start: Start, rival: SolverResult | None) -> SolverResult:
-        now, solver = time.monotonic(), idle.get()
-        try:
+    def job(start: Start, rival: SolverResult | None) -> Callable[[Solver], SolverResult]:
+        def solve(solver: Solver) -> SolverResult:
+            now = time.monotonic()
             return solver.solve(start.x, deadline=now + share * (deadline - now), problem=problem, rival=rival)
-        finally:
-            idle.put(solver)
 
-    if min(len(solvers), len(starts)) < 2:
-        yield from (solve(*start) for start in starts)
-        return
-    with ThreadPoolExecutor(len(solvers), thread_name_prefix="start") as pool:
-        futures = [pool.submit(solve, *start) for start in starts]
-        try:
-            for future in futures:
-                yield future.result()
-        finally:
-            # After a Ctrl-C the starts that wait are dropped; those at work end first.
-            for future in futures:
-                future.cancel()
+        return solve
+
+    return abreast(solvers, [job(*start) for start in starts])
 
 
 def follow_up(

@@ -85,9 +85,9 @@ class Workshop:
             kept = self._solvers[key] = (problem, made)
         return kept[1]
 
-    def postures(self, problem: Problem, say: Say | None = None) -> PostureSolver:
-        """Return the solver of static postures for a lift; ``say`` hears of it when kernels must be compiled first."""
-        self._postures = PostureSolver(problem.team, problem.task, say, like=self._postures)
+    def postures(self, problem: Problem, say: Say | None = None, workers: int = 1) -> PostureSolver:
+        """Return the solver of static postures for a lift; ``say`` and ``workers`` as for ``PostureSolver``."""
+        self._postures = PostureSolver(problem.team, problem.task, say, like=self._postures, workers=workers)
         return self._postures
 
     def _kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:

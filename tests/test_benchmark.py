@@ -78,6 +78,15 @@ def test_compared_with_itself_no_count_changes_and_a_changed_one_is_shown(first:
     assert "-50.0 %" in shown
 
 
+def test_meshes_are_timed_by_themselves_and_from_one_to_the_next() -> None:
+    row = _module("solves").scaling(1, (10, 20, 40), ("banded",))
+    found = row.details["banded"]
+    assert found["not_converged"] == []
+    assert all(ms > 0.0 for key in ("ms", "stepwise_ms") for ms in found[key]) and len(found["stepwise_ms"]) == 3
+    an_interval = [ms / n for ms, n in zip(found["ms"], (10, 20, 40), strict=True)]
+    assert row.value == pytest.approx(max(an_interval) / min(an_interval))
+
+
 @pytest.mark.parametrize(
     ("value", "more", "verdict"),
     [(9.0, False, "beyond"), (15.0, False, "reached"), (21.0, False, "missed"), (21.0, True, "beyond")],

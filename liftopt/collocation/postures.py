@@ -7,7 +7,7 @@ solve is spent on it. The others go to the banded solver, on the equations of th
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ import pinocchio as pin
 from liftopt.collocation.inverse_kinematics import CLOSED, CLOSING_ITERATIONS, InverseKinematics
 from liftopt.collocation.kernels import Say
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.abreast import abreast
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Solver
@@ -53,26 +54,29 @@ class Posture:
 class PostureSolver:
     """Static postures of a team with the object at a given pose."""
 
-    def __init__(self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None) -> None:
+    def __init__(
+        self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None, workers: int = 1
+    ) -> None:
         """Build the solver.
 
         Args:
             team: who holds what.
             task: its limits and weights; poses are given to ``solve``.
             say: hears of it when kernels must be compiled first.
-            like: another one, whose solver is taken if it fits.
+            like: another one, whose solvers are taken if they fit.
+            workers: postures held at a time, at least.
         """
         self.problem: Problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
         self.kinematics = InverseKinematics(self.problem)
-        self._solver: Solver
         self._at_pose: dict[bytes, Problem] = {}
-        if like is not None and self.problem.interchangeable(like.problem):
-            self._solver = like._solver
-            return
+        fitting = like is not None and self.problem.interchangeable(like.problem)
+        self._solvers: list[Solver] = [*like._solvers] if like and fitting else []
         try:
-            self._solver = Banded(self.problem, BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH), say)
-        except SolverError:
-            self._solver = Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))
+            while len(self._solvers) < workers:
+                options = BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH)
+                self._solvers.append(Banded(self.problem, options, say))
+        except SolverError:  # IPOPT's linear solver takes one solve at a time
+            self._solvers = self._solvers or [Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))]
 
     def solve(self, pose: Array, seed: Array, deadline: float) -> Posture | None:
         """Return the posture found from ``seed`` (coordinates), or None; NaN in ``pose`` (6,) leaves that free."""
@@ -81,27 +85,32 @@ class PostureSolver:
     def search(self, pose: Array, seeds: Sequence[Array], deadline: float) -> Iterator[Posture | None]:
         """Yield what is found from each seed: all are brought to the object at once, and held one by one."""
         if not seeds:
-            return
+            return iter(())
         reach = self.kinematics.reach(pose, np.array(seeds), deadline, most=CLOSING_ITERATIONS)
-        for coordinates, shortfall in zip(reach.coordinates, reach.shortfall, strict=True):
-            yield self._hold(pose, coordinates, deadline) if shortfall < CLOSED else None
-
-    def _hold(self, pose: Array, coordinates: Array, deadline: float) -> Posture | None:
-        if time.monotonic() > deadline:
-            return None
         key = pose.tobytes()
         if key not in self._at_pose:
             self._at_pose[key] = self.problem.at_pose(pose)
         problem = self._at_pose[key]
-        model = problem.team.held.model
-        weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
-        share, layout = np.zeros(problem.layout.force.shape), problem.layout
-        share[:, [layout.force_columns(i).start + 2 for i in range(layout.n_agents)]] = weight / layout.n_agents
-        result = self._solver.solve(problem.pack(coordinates[None, :], share), deadline=deadline, problem=problem)
-        if not result.converged:
-            return None
-        control, force = problem.unpack(result.x)
-        return Posture(control[0], force[0], result.objective)
+
+        def job(coordinates: Array, shortfall: float) -> Callable[[Solver], Posture | None]:
+            return lambda solver: _held(solver, problem, coordinates, deadline) if shortfall < CLOSED else None
+
+        return abreast(self._solvers, [job(*end) for end in zip(reach.coordinates, reach.shortfall, strict=True)])
+
+
+def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: float) -> Posture | None:
+    """Return the static posture found from coordinates that close on the object; None if there is none in time."""
+    if time.monotonic() > deadline:
+        return None
+    model = problem.team.held.model
+    weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
+    share, layout = np.zeros(problem.layout.force.shape), problem.layout
+    share[:, [layout.force_columns(i).start + 2 for i in range(layout.n_agents)]] = weight / layout.n_agents
+    result = solver.solve(problem.pack(coordinates[None, :], share), deadline=deadline, problem=problem)
+    if not result.converged:
+        return None
+    control, force = problem.unpack(result.x)
+    return Posture(control[0], force[0], result.objective)
 
 
 def seed_coordinates(problem: Problem, pose: Array, rng: np.random.Generator | None) -> Array:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from benchmarks.case import Case, measure, repeat
+from benchmarks.case import Case, Timing, measure, repeat
 from benchmarks.goals import Row
-from benchmarks.scenarios import table5, varied_scenarios
+from benchmarks.scenarios import Varied, table5, varied_scenarios
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import FEWEST
+from liftopt.collocation.transfer import transfer, transfer_multipliers
+from liftopt.refinement import meshes_below
 from liftopt.replan import Replanner
 from liftopt.scenario import Scenario, with_overrides
 from liftopt.scene import agents_of, object_of, task_of
@@ -89,7 +93,8 @@ def warm_mixes(case: Case, mixes: int) -> Row:
 def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, ...] = ("banded", "ipopt")) -> Row:
     """Time both solvers on ever finer meshes; the banded one's time an interval should stay the same.
 
-    Where a solve goes on its way to an optimum depends on the mesh, so several lifts are taken together.
+    Where a solve goes on its way to an optimum depends on the mesh, so several lifts are taken together. Beside a solve
+    from the start on the mesh itself, the banded one is timed as a lift does it, from a coarse mesh to ever finer ones.
     """
     lifts = (table5(), *varied_scenarios()[: SCALED - 1])
     details: dict[str, Any] = {"N": list(meshes), "lifts": len(lifts)}
@@ -107,15 +112,34 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
             per.append(iterations / len(lifts))
         details[name] = {"ms": times, "iterations": per, "not_converged": failed}
     found = details["banded"]
+    found["stepwise_ms"] = [
+        float(np.mean([1e3 * _stepwise(varied, n, repeats).median for varied in lifts])) for n in meshes
+    ]
     an_interval = np.array(found["ms"]) / np.array(meshes)
     an_iteration = an_interval / np.array(found["iterations"])
     ratio, clean = (float(values.max() / values.min()) for values in (an_interval, an_iteration))
     note = f"{', '.join(f'{t:.0f}' for t in found['ms'])} ms, mean of {len(lifts)} lifts; "
     note += f"{', '.join(f'{n:.0f}' for n in found['iterations'])} iterations; by iteration and interval "
-    note += f"max / min {clean:.2f}"
+    note += f"max / min {clean:.2f}; from mesh to mesh {', '.join(f'{t:.0f}' for t in found['stepwise_ms'])} ms"
     if found["not_converged"]:
         note += f"; not converged at N = {found['not_converged']}"
     return Row(ratio, note, {"iterations": {name: details[name]["iterations"] for name in solvers}}, details)
+
+
+def _stepwise(varied: Varied, intervals: int, repeats: int) -> Timing:
+    """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before."""
+    meshes = [n for n in (*meshes_below(intervals), intervals) if n >= FEWEST]
+    cases = [Case.of(varied.scenario(), varied.ends, n) for n in meshes]
+    solvers = [case.solver("banded") for case in cases]
+
+    def solve() -> None:
+        result = cases[0].solve(solvers[0])
+        for coarse, fine, solver in zip(cases, cases[1:], solvers[1:], strict=False):
+            x = transfer(coarse.problem, coarse.spline, result.x, fine.problem, fine.spline)
+            warm = transfer_multipliers(coarse.problem, result.multipliers, fine.problem)
+            result = replace(fine, start=x).solve(solver, warm=warm)
+
+    return repeat(repeats, solve)[0]
 
 
 def counts(case: Case, solver: Any, result: SolverResult) -> dict[str, Any]:

@@ -86,7 +86,7 @@ def test_what_inverse_kinematics_cannot_close_costs_no_solve(
     """Three metres away no seed closes, so the solver is never asked."""
     task = make_task(x=-1.2, agent_weights=(1.0, 1.0))
     solver, problem = PostureSolver(team, task), Problem(team, task, RestToRestSpline(6).mesh())
-    monkeypatch.setattr(solver, "_solver", None)
+    monkeypatch.setattr(solver, "_solvers", [None])
     seeds = [seed_coordinates(problem, task.start, np.random.default_rng(i)) for i in range(5)]
     assert list(solver.search(task.start, seeds, time.monotonic() + 10.0)) == [None] * 5
 
@@ -108,6 +108,21 @@ def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
     again = [solver.solve(task.start, posture.coordinates, time.monotonic() + 30.0) for posture in found]
     same = [one and np.isclose(one.cost, posture.cost, rtol=1e-4) for one, posture in zip(again, found, strict=True)]
     assert sum(map(bool, same)) >= 2
+
+
+def test_postures_held_two_at_a_time_are_the_same_bit_by_bit(team: Team, make_task: Callable[..., LiftTask]) -> None:
+    task, rng = make_task(), np.random.default_rng(3)
+    problem = Problem(team, task, RestToRestSpline(6).mesh())
+    seeds = [seed_coordinates(problem, task.start, rng) for _ in range(12)]
+    alone = PostureSolver(team, task)
+    both = PostureSolver(team, task, like=alone, workers=2)
+    one, other = (list(solver.search(task.start, seeds, time.monotonic() + 30.0)) for solver in (alone, both))
+    assert sum(posture is not None for posture in one) > 6
+    for first, second in zip(one, other, strict=True):
+        assert (first is None) == (second is None)
+        if first and second:
+            np.testing.assert_array_equal(first.coordinates, second.coordinates)
+            np.testing.assert_array_equal(first.force, second.force)
 
 
 def _moves(*promises: float, at: float = 0.0) -> list[Move]:
