@@ -125,7 +125,7 @@ class Solver:
     starts: Annotated[int, Whole("starts of which the best is kept", 1, 64)] = 4
     tries: Annotated[int, Whole("starts tried first on a coarser mesh, 0: none", 0, 512)] = 48
     tolerance: Annotated[float, Number("KKT error at which a start has converged", "", 1e-10, 1e-3)] = 1e-6
-    workers: Annotated[int, Whole("starts at a time; IPOPT takes one", 1, 64)] = 2
+    workers: Annotated[int, Whole("starts and postures at a time; IPOPT takes one", 1, 64)] = 2
     seed: Annotated[int, Whole("seed of the random starts", 0, 2**32 - 1)] = 0
     time_limit: Annotated[float, Number("wall time of the whole solve", "s", 0.1, 3600.0)] = 50.0
 

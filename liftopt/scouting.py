@@ -20,7 +20,7 @@ from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
-from liftopt.refinement import MESH, QUICKEST, is_known, meshes_below, same_optimum
+from liftopt.refinement import MESH, PROMISING, QUICKEST, is_known, meshes_below, same_optimum
 from liftopt.variations import vary
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 # Of the time that is left for solving.
 SCOUTING_SHARE = 0.5
-# Optima further above the best one than this are not worth a solve on the fine mesh.
-PROMISING = 1.1
 # A scout is given up where it promises nothing below so many times the optimum of the first. A margin finds more: of
 # heavy or long lifts the objective falls late.
 MARGIN = 1.2

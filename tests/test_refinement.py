@@ -11,12 +11,14 @@ import pytest
 
 from liftopt.accuracy import Accuracy
 from liftopt.cli import main
+from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import BEATEN, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.lift import Search, lift
 from liftopt.plan import Plan
-from liftopt.refinement import compared, distance, finer, neighbour, rivals, unmet
+from liftopt.refinement import SAME_OPTIMUM, compared, distance, finer, neighbour, rivals, unmet
 from liftopt.replan import Replanner
 from liftopt.result_reader import load_result
 from liftopt.result_writer import save
@@ -103,14 +105,41 @@ def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Plan) 
     best = finer(search, [coarse, coarse], 40)
     assert best is not None and best.solved
     names = [record.name for record in search.records]
-    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh, N = 40"]
+    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh on 40, N = 40"]
+    assert best.origin is coarse and len(search.plans) == len({round(p.result.objective, 2) for p in search.plans})
     x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
     cold = search.solvers[0].solve(x, deadline=np.inf, problem=best.problem, rival=best.result)
     warm = neighbour(Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
     assert warm is not None and cold.iterations > 1.5 * warm.result.iterations
     assert abs(search.records[2].iterations - cold.iterations) <= 2
     led = [result.objective for result in (warm.result, cold) if result.converged]
-    assert best.result.objective == pytest.approx(min(led), rel=1e-9)
+    assert best.result.objective == pytest.approx(min(led), rel=SAME_OPTIMUM)
+
+
+def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
+    coarse: Plan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """IPOPT is no help against a rival; from 20 intervals 80 are reached even if 40 fail."""
+    solve = Banded.solve
+
+    def fail_on_40(self: Banded, x0: Any, **given: Any) -> SolverResult:
+        result = solve(self, x0, **given)
+        fails = len(self.problem.mesh.phase) == 41
+        return replace(result, converged=False, status="Maximum_Iterations_Exceeded") if fails else result
+
+    def never(self: Ipopt, *_: Any, **__: Any) -> SolverResult:
+        raise AssertionError("IPOPT was asked")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Banded, "solve", fail_on_40)
+        patch.setattr(Ipopt, "solve", never)
+        rival = coarse.result
+        assert neighbour(Workshop(), coarse, 40, ("banded", "ipopt"), np.inf, lambda line: None, rival) is None
+    monkeypatch.setattr(Banded, "solve", fail_on_40)
+    monkeypatch.setattr(Ipopt, "solve", lambda self, x0, **_: replace(coarse.result, converged=False))
+    search = Search(replace(coarse.scenario), Workshop(), RestToRestSpline(80), lambda line: None)
+    best = finer(search, [coarse], 80)
+    assert best is not None and best.solved and best.origin is coarse
 
 
 def test_multipliers_keep_the_sum_over_time(coarse: Plan) -> None:

@@ -15,9 +15,9 @@ from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.lift import Search
-from liftopt.refinement import FINEST_SCOUTS, SAME_OPTIMUM, meshes_below
+from liftopt.refinement import PROMISING, SAME_OPTIMUM, SCOUTED, meshes_below
 from liftopt.scenario import load_scenario
-from liftopt.scouting import PROMISING, ROUGH, _unseen, scout
+from liftopt.scouting import ROUGH, _unseen, scout
 from liftopt.variations import TURN
 from liftopt.workshop import Workshop
 
@@ -47,8 +47,7 @@ def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() ->
 @given(intervals=st.integers(12, 400))
 def test_meshes_below_double_up_to_the_one_asked_for(intervals: int) -> None:
     meshes = [*meshes_below(intervals), intervals]
-    assert len(meshes) > 1 and meshes[0] <= FINEST_SCOUTS
-    assert meshes[0] > FINEST_SCOUTS / 2 or len(meshes) == 2
+    assert meshes[0] < 2 * SCOUTED and (len(meshes) == 2 or meshes[0] >= SCOUTED)
     for coarse, fine in pairwise(meshes):
         assert fine <= 2 * coarse <= fine + 1
 
@@ -61,10 +60,10 @@ def test_a_fine_mesh_is_reached_from_mesh_to_mesh() -> None:
     while chain[-1].origin is not None:
         chain.append(chain[-1].origin)
     assert [link.spline.intervals for link in chain] == [80, 40, 20]
-    assert all(later.result.iterations < 30 for later in chain[:-1])
     assert any(" variations on 20 intervals led to" in note for note in search.notes)
     told = [record.name for record in search.records]
     assert any(name.endswith(", N = 40") for name in told) and not told[-1].endswith(", N = 80")
+    assert len(set(told)) == len(told)
 
 
 def test_no_scouts_where_half_the_mesh_is_too_coarse_or_none_are_asked_for() -> None:

@@ -12,7 +12,8 @@ namespace {
 // on every mesh, but acts on positions, which yield less the finer it is; balance acts on accelerations, with entries
 // that grow with N^2. With 1e6 for all rows refinement hardly converged at N = 160. Of the powers tried (0, 1, 3/2, 2)
 // with 1e6 to 1e10 this takes the fewest refinements on 17 lifts at N = 10 to 160: at 160 14 a solve instead of 79.
-constexpr double kPenalty = 3e8, kSmallestRow = 1e-3;
+// A row with no entry to speak of where the solve starts counts as one of this size.
+constexpr double kPenalty = 3e8, kSmallestRow = 0.1;
 // delta_w of Waechter and Biegler (2006), section 3.1 and table 3. It decays faster than theirs: an attempt that fails
 // costs a fraction of an iteration, and steps that are held back need more iterations.
 constexpr double kFirstDelta = 1e-4, kLeastDelta = 1e-20, kLargestDelta = 1e20;

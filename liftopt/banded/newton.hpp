@@ -58,7 +58,7 @@ class Newton {
   std::vector<int> held_;
   double delta_ = 0.0, last_delta_ = 0.0;  // now, and the last one that was needed
   double exact_delta_ = 0.0;               // of the last matrix with all of its curvature
-  Vector penalty_;                // of each row, for as long as its bounds stay the same
+  Vector penalty_;                // of each row, by its size where the solve starts
   Vector row_weight_;             // of the matrix that was factorised
   Vector sigma_rows_, sigma_x_;   // of the matrix without the penalty
   Vector step_, rows_, residual_, row_residual_;

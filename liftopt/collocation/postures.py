@@ -64,10 +64,11 @@ class PostureSolver:
             task: its limits and weights; poses are given to ``solve``.
             say: hears of it when kernels must be compiled first.
             like: another one, whose solvers are taken if they fit.
-            workers: postures held at a time, at least.
+            workers: postures held at a time.
         """
         self.problem: Problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
         self.kinematics = InverseKinematics(self.problem)
+        self._workers = workers
         self._at_pose: dict[bytes, Problem] = {}
         fitting = like is not None and self.problem.interchangeable(like.problem)
         self._solvers: list[Solver] = [*like._solvers] if like and fitting else []
@@ -83,7 +84,7 @@ class PostureSolver:
         return next(self.search(pose, [seed], deadline))
 
     def search(self, pose: Array, seeds: Sequence[Array], deadline: float) -> Iterator[Posture | None]:
-        """Yield what is found from each seed: all are brought to the object at once, and held one by one."""
+        """Yield what is found from each seed: all are brought to the object at once, and held each by itself."""
         if not seeds:
             return iter(())
         reach = self.kinematics.reach(pose, np.array(seeds), deadline, most=CLOSING_ITERATIONS)
@@ -95,7 +96,9 @@ class PostureSolver:
         def job(coordinates: Array, shortfall: float) -> Callable[[Solver], Posture | None]:
             return lambda solver: _held(solver, problem, coordinates, deadline) if shortfall < CLOSED else None
 
-        return abreast(self._solvers, [job(*end) for end in zip(reach.coordinates, reach.shortfall, strict=True)])
+        return abreast(
+            self._solvers[: self._workers], [job(*end) for end in zip(reach.coordinates, reach.shortfall, strict=True)]
+        )
 
 
 def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: float) -> Posture | None:

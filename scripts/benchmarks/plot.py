@@ -33,7 +33,7 @@ def plot_scaling(details: dict[str, Any], path: Path) -> None:
     axes.xaxis.set_major_formatter(ScalarFormatter())
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("intervals N")
-    axes.set_ylabel("one solve from the same start [ms]")
+    axes.set_ylabel("from the same start to the optimum [ms]")
     axes.legend(title="dashed: linear in N")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path)

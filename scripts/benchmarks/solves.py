@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -94,7 +95,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     """Time both solvers on ever finer meshes; the banded one's time an interval should stay the same.
 
     Where a solve goes on its way to an optimum depends on the mesh, so several lifts are taken together. Beside a solve
-    from the start on the mesh itself, the banded one is timed as a lift does it, from a coarse mesh to ever finer ones.
+    from the start on the mesh itself, the banded one is timed from a coarse mesh to ever finer ones.
     """
     lifts = (table5(), *varied_scenarios()[: SCALED - 1])
     details: dict[str, Any] = {"N": list(meshes), "lifts": len(lifts)}
@@ -112,34 +113,47 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
             per.append(iterations / len(lifts))
         details[name] = {"ms": times, "iterations": per, "not_converged": failed}
     found = details["banded"]
-    found["stepwise_ms"] = [
-        float(np.mean([1e3 * _stepwise(varied, n, repeats).median for varied in lifts])) for n in meshes
-    ]
+    found |= {"stepwise_ms": [], "stepwise_iterations": []}
+    for intervals in meshes:
+        steps = [_stepwise(varied, intervals, repeats) for varied in lifts]
+        found["stepwise_ms"].append(float(np.mean([1e3 * timing.median for timing, _ in steps])))
+        last = [results[-1].iterations for _, results in steps]
+        found["stepwise_iterations"].append(float(np.mean(last)))
+        found["not_converged"] += [intervals for _, results in steps if not all(r.converged for r in results)]
     an_interval = np.array(found["ms"]) / np.array(meshes)
     an_iteration = an_interval / np.array(found["iterations"])
     ratio, clean = (float(values.max() / values.min()) for values in (an_interval, an_iteration))
     note = f"{', '.join(f'{t:.0f}' for t in found['ms'])} ms, mean of {len(lifts)} lifts; "
     note += f"{', '.join(f'{n:.0f}' for n in found['iterations'])} iterations; by iteration and interval "
-    note += f"max / min {clean:.2f}; from mesh to mesh {', '.join(f'{t:.0f}' for t in found['stepwise_ms'])} ms"
+    note += (
+        f"max / min {clean:.2f}; from mesh to mesh {', '.join(f'{t:.0f}' for t in found['stepwise_ms'])} ms in all, "
+    )
+    note += f"the last in {', '.join(f'{n:.0f}' for n in found['stepwise_iterations'])} iterations"
     if found["not_converged"]:
         note += f"; not converged at N = {found['not_converged']}"
-    return Row(ratio, note, {"iterations": {name: details[name]["iterations"] for name in solvers}}, details)
+    counted = {name: details[name]["iterations"] for name in solvers} | {"stepwise": found["stepwise_iterations"]}
+    return Row(ratio, note, {"iterations": counted}, details)
 
 
-def _stepwise(varied: Varied, intervals: int, repeats: int) -> Timing:
-    """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before."""
+def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, list[SolverResult]]:
+    """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before.
+
+    Returns:
+        the times of all together, and the result on each mesh.
+    """
     meshes = [n for n in (*meshes_below(intervals), intervals) if n >= FEWEST]
     cases = [Case.of(varied.scenario(), varied.ends, n) for n in meshes]
     solvers = [case.solver("banded") for case in cases]
 
-    def solve() -> None:
-        result = cases[0].solve(solvers[0])
-        for coarse, fine, solver in zip(cases, cases[1:], solvers[1:], strict=False):
-            x = transfer(coarse.problem, coarse.spline, result.x, fine.problem, fine.spline)
-            warm = transfer_multipliers(coarse.problem, result.multipliers, fine.problem)
-            result = replace(fine, start=x).solve(solver, warm=warm)
+    def solve() -> list[SolverResult]:
+        results = [cases[0].solve(solvers[0])]
+        for (coarse, fine), solver in zip(pairwise(cases), solvers[1:], strict=True):
+            x = transfer(coarse.problem, coarse.spline, results[-1].x, fine.problem, fine.spline)
+            warm = transfer_multipliers(coarse.problem, results[-1].multipliers, fine.problem)
+            results.append(replace(fine, start=x).solve(solver, warm=warm))
+        return results
 
-    return repeat(repeats, solve)[0]
+    return repeat(repeats, solve)
 
 
 def counts(case: Case, solver: Any, result: SolverResult) -> dict[str, Any]:

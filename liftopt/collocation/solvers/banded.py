@@ -116,7 +116,7 @@ class Banded:
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
-            share = min(1.0, self._mu_share)
+            share = min(1.0, self._mu_share)  # with more, some went to another motion on 10 intervals
             near = INTERPOLATED | {"mu": share * INTERPOLATED["mu"]} if warm.interpolated else WARM
             arguments = near | more | {"warm": (warm.x, warm.g)}
         found = self._run(x0, problem, deadline, arguments)

@@ -17,7 +17,7 @@ from liftopt.collocation.solvers.banded import Banded, BandedOptions, eliminatio
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, knot_rows
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
-from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.spline import Mesh, RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
 from liftopt.lift import lift
@@ -158,6 +158,19 @@ def test_rows_are_measured_as_casadi_has_them(small_lift: Problem, banded: Bande
     )
     np.testing.assert_allclose(sizes[closure], exact[closure], rtol=1e-12)
     assert (exact <= 3 * sizes * (1 + 1e-12)).all()
+
+
+@pytest.mark.parametrize("grasps", [(), ("human.grasp=wrench",)])
+def test_rows_of_a_balance_at_rest_are_measured_exactly(grasps: tuple[str, ...]) -> None:
+    """By CasADi's Jacobian; on one knot there are no accelerations, so that an entry has one term."""
+    scenario = load_scenario("table5", grasps)
+    problem = Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), Mesh.at_rest())
+    solver = Banded(problem)
+    x = np.random.default_rng(2).normal(size=problem.layout.n_x)
+    solver.evaluate(x, problem)
+    exact = np.abs(problem.nlp.jac_g(x, problem.parameters)[1].full()).max(axis=1)
+    rows = next(block.rows for block in problem.constraints.blocks if block.name == "balance")
+    np.testing.assert_allclose(solver._nlp.row_sizes(x)[rows], exact[rows], rtol=1e-9)
 
 
 def test_linear_systems_of_a_fine_mesh_need_hardly_any_refinement() -> None:
