@@ -42,8 +42,25 @@ typedef double lane __attribute__((vector_size(8 * LANES), aligned(8 * LANES)));
 typedef long long casadi_int;
 #define LIFT(name, call) static inline lane name(lane x, lane y) \\
 { lane r; (void)y; for (int i = 0; i < LANES; ++i) r[i] = call; return r; }
+/* The C library of GNU has sine and cosine of vectors, with 4 units in the last place at most; libm.so brings it. */
+#if defined(__GLIBC__) && defined(__x86_64__)
+#if __GLIBC_PREREQ(2, 22) && LANES == 8
+#define OF_LANES(name) _ZGVeN8v_##name
+#elif __GLIBC_PREREQ(2, 22) && LANES == 4
+#define OF_LANES(name) _ZGVdN4v_##name
+#elif __GLIBC_PREREQ(2, 22)
+#define OF_LANES(name) _ZGVbN2v_##name
+#endif
+#endif
+#ifdef OF_LANES
+lane OF_LANES(sin)(lane);
+lane OF_LANES(cos)(lane);
+#define lane_sin(x, y) OF_LANES(sin)(x)
+#define lane_cos(x, y) OF_LANES(cos)(x)
+#else
 LIFT(lane_sin, sin(x[i]))
 LIFT(lane_cos, cos(x[i]))
+#endif
 LIFT(lane_sqrt, sqrt(x[i]))
 LIFT(lane_fabs, fabs(x[i]))
 LIFT(lane_fmax, fmax(x[i], y[i]))
