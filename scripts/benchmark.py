@@ -101,7 +101,7 @@ def _jobs(
         "lift": lambda: add("lift")(whole.in_process("banded", 8, repeats)),
         "process": lambda: add("process", "memory")(whole.fresh_process(repeats)),
         "varied": lambda: add("first_try", "fallback")(varied.first_try(count)),
-        "scaling": lambda: add("scaling")(solves.scaling(few)),
+        "scaling": lambda: add("scaling")(solves.scaling(repeats)),
         "many_starts": lambda: add("many_starts")(whole.many_starts(few)),
         "objective": lambda: add("objective")(varied.objectives(options.objective_with, count)),
         "virtual_machine": lambda: add("virtual_machine")(rivals.virtual_machine(few)),
