@@ -83,7 +83,7 @@ class Search:
         self.plans: list[Plan] = []  # of the latest mesh, the best first
         self.accuracy: Accuracy | None = None
         self._on(spline)
-        self.postures = workshop.postures(self.problem, say, scenario.solver.workers)
+        self.postures = workshop.postures(self.problem, scenario, say)
         if not all(kernel.compiled for kernel in self.problem.team.kernels):
             self.notes.append("no C compiler: the dynamics ran in CasADi's virtual machine, several times slower")
         # Compiling is done once in a lifetime; the limit is on what comes after, with time left to verify and write.

@@ -169,6 +169,14 @@ def is_known(objective: float, plans: Sequence[Plan]) -> bool:
     return any(same_optimum(objective, plan.result.objective) for plan in plans)
 
 
+def each_once(plans: Sequence[Plan]) -> list[Plan]:
+    """Return the different optima among those on one mesh, the best first."""
+    distinct: list[Plan] = []
+    for plan in sorted(plans, key=_objective):
+        distinct += [] if is_known(plan.result.objective, distinct) else [plan]
+    return distinct
+
+
 def same_optimum(objective: float, other: float) -> bool:
     """Return whether two objectives on one mesh are of the same optimum."""
     return abs(objective - other) <= SAME_OPTIMUM * objective
@@ -208,10 +216,7 @@ def taken(search: Search, plans: Sequence[Plan], intervals: int, margin: float =
     if origin is not None:
         search.say(f"solving on {intervals} intervals afresh: {origin.start}")
         solve(origin, afresh=True)
-    distinct: list[Plan] = []
-    for plan in sorted(found, key=_objective):
-        distinct += [] if is_known(plan.result.objective, distinct) else [plan]
-    return distinct
+    return each_once(found)
 
 
 def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
@@ -240,15 +245,19 @@ def _objective(plan: Plan) -> float:
     return plan.result.objective
 
 
+def _accuracy(search: Search, plan: Plan, origin: Plan | None) -> Accuracy:
+    """Return the accuracy of a plan beside where it came from, or where that tells nothing beside another mesh."""
+    known = compared(plan, origin) if origin else Accuracy.between_knots(plan.verification)
+    return known if known.estimated else estimate(search.workshop, plan, search.deadline, search.say)
+
+
 def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
     """Return a solved plan and its accuracy, on a mesh as fine as its scenario asks for.
 
     The search goes from mesh to mesh, each twice as fine, until ``Refine`` is met, its time is over or the mesh is the
     finest there may be; what came of it is among its notes.
     """
-    accuracy = compared(plan, plan.origin) if plan.origin else Accuracy.between_knots(plan.verification)
-    if not accuracy.estimated:
-        accuracy = estimate(search.workshop, plan, search.deadline, search.say)
+    accuracy = _accuracy(search, plan, plan.origin)
     wanted, coarse = search.scenario.refine, plan.spline.intervals
     if not wanted.on or not (first := unmet(accuracy, wanted)):
         return plan, accuracy
@@ -266,9 +275,7 @@ def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
                 f"{best.result.objective:.5g}; on {plan.spline.intervals} it had {origin.result.objective:.5g} where "
                 f"{plan.result.objective:.5g} was the best"
             )
-        plan, accuracy = best, compared(best, origin)
-        if not accuracy.estimated:
-            accuracy = estimate(search.workshop, plan, search.deadline, search.say)
+        plan, accuracy = best, _accuracy(search, best, origin)
         missing = unmet(accuracy, wanted)
     if plan.spline.intervals > coarse:
         search.notes.append(f"mesh refined from N = {coarse} to {plan.spline.intervals}: {first}")

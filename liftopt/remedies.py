@@ -200,7 +200,7 @@ class Remedies:
         if near and near.problem.same_structure(problem):
             return solved(Start("near", near.result.x), near)
         soon = min(until, time.monotonic() + SECONDS_A_START)
-        postures = workshop.postures(problem, workers=scenario.solver.workers)
+        postures = workshop.postures(problem, scenario)
         starts = posture_starts(problem, STARTS, scenario.solver.seed, soon, postures=postures)
         if starts:
             lower, upper = problem.bounds()

@@ -20,7 +20,7 @@ from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
-from liftopt.refinement import MESH, PROMISING, QUICKEST, is_known, meshes_below, same_optimum
+from liftopt.refinement import MESH, PROMISING, QUICKEST, each_once, meshes_below, same_optimum
 from liftopt.variations import vary
 
 if TYPE_CHECKING:
@@ -84,12 +84,14 @@ def _distinct(
     search: Search, problem: Problem, spline: RestToRestSpline, tried: Sequence[tuple[Start, SolverResult]]
 ) -> list[Plan]:
     """Return the optima found, the best first, each once."""
-    optima: list[Plan] = []
-    for start, result in sorted(tried, key=lambda pair: pair[1].objective):
-        if result.converged and not is_known(result.objective, optima):
-            name = f"{start.name}{MESH}{spline.intervals}"
-            optima.append(Plan(search.scenario, problem, spline, name, result))
-    return optima
+    mesh = f"{MESH}{spline.intervals}"
+    return each_once(
+        [
+            Plan(search.scenario, problem, spline, f"{start.name}{mesh}", result)
+            for start, result in tried
+            if result.converged
+        ]
+    )
 
 
 def _unseen(tried: Sequence[tuple[Start, SolverResult]]) -> float:

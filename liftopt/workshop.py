@@ -85,8 +85,9 @@ class Workshop:
             kept = self._solvers[key] = (problem, made)
         return kept[1]
 
-    def postures(self, problem: Problem, say: Say | None = None, workers: int = 1) -> PostureSolver:
-        """Return the solver of static postures for a lift; ``say`` and ``workers`` as for ``PostureSolver``."""
+    def postures(self, problem: Problem, scenario: Scenario, say: Say | None = None) -> PostureSolver:
+        """Return the solver of static postures for a lift; ``say`` hears of it when kernels must be compiled first."""
+        workers = scenario.solver.workers
         self._postures = PostureSolver(problem.team, problem.task, say, like=self._postures, workers=workers)
         return self._postures
 

@@ -96,13 +96,14 @@ const char* name_of(banded::Status status) {
   }
 }
 
+const double* check(const Doubles& array, int size) {
+  if (array.size() != size) throw std::length_error("an array does not have the problem's size");
+  return array.data();
+}
+
 py::dict solve(banded::InteriorPoint& solver, const banded::Nlp& nlp, const Doubles& lower_x, const Doubles& upper_x,
                const Doubles& lower_g, const Doubles& upper_g, const Doubles& x0,
                const std::optional<std::tuple<Doubles, Doubles>>& warm, const banded::Options& options) {
-  const auto check = [](const Doubles& array, int size) {
-    if (array.size() != size) throw std::length_error("an array does not have the problem's size");
-    return array.data();
-  };
   const int n = nlp.unknowns(), m = nlp.rows();
   const double* warm_x = warm ? check(std::get<0>(*warm), n) : nullptr;
   const double* warm_g = warm ? check(std::get<1>(*warm), m) : nullptr;
@@ -151,12 +152,12 @@ PYBIND11_MODULE(_liftopt_banded, module) {
       .def(
           "evaluate",
           [](banded::Nlp& nlp, const Doubles& x) {
-            if (x.size() != nlp.unknowns()) throw std::length_error("an array does not have the problem's size");
+            const double* at = check(x, nlp.unknowns());
             Vector g(nlp.rows());
             double f = 0.0;
             {
               py::gil_scoped_release free;
-              f = nlp.evaluate(x.data(), g.data());
+              f = nlp.evaluate(at, g.data());
             }
             return py::make_tuple(f, Doubles(static_cast<py::ssize_t>(g.size()), g.data()));
           },
@@ -164,12 +165,12 @@ PYBIND11_MODULE(_liftopt_banded, module) {
       .def(
           "row_sizes",
           [](banded::Nlp& nlp, const Doubles& x) {
-            if (x.size() != nlp.unknowns()) throw std::length_error("an array does not have the problem's size");
+            const double* at = check(x, nlp.unknowns());
             const Vector none(nlp.rows());
             Vector sizes(nlp.rows());
             {
               py::gil_scoped_release free;
-              nlp.differentiate(x.data(), none.data(), 1.0);
+              nlp.differentiate(at, none.data(), 1.0);
               nlp.row_sizes(sizes.data());
             }
             return Doubles(static_cast<py::ssize_t>(sizes.size()), sizes.data());

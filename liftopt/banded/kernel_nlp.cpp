@@ -237,22 +237,28 @@ void KernelNlp::multiply_hessian(const double* x, double* y) {
 }
 
 void KernelNlp::row_sizes(double* sizes) const {
+  const int width = lanes();
   linear_.row_sizes(sizes);
-  for (int group = 0; group < knots_.groups(); ++group)
-    for (const KnotRow& row : knot_rows_)
-      for (const KnotRow::Term& term : row.terms) {
-        const KernelPart& part = parts_[term.part];
-        for (std::size_t e = 0; e < part.jacobian_row.size(); ++e) {
-          if (part.jacobian_row[e] != term.output) continue;
-          const double* slope = slopes(group) + (first_slope_[term.part] + e) * lanes();
-          for (int l = 0; l < knots_.knots_of(group); ++l) {
-            const int r = row.row[group * lanes() + l];
-            if (r < 0) continue;
-            const double reach = knots_.reach(group, l, part.columns.order(part.jacobian_column[e]));
-            sizes[r] = std::max(sizes[r], std::fabs(term.factor * slope[l]) * reach);
-          }
-        }
+  for (int group = 0; group < knots_.groups(); ++group) {
+    Vector largest(n_c_ * width, 0.0);  // of each output's slopes
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      const KernelPart& part = parts_[p];
+      const double* slope = slopes(group) + first_slope_[p] * width;
+      for (std::size_t e = 0; e < part.jacobian_row.size(); ++e, slope += width) {
+        double* at = largest.data() + (first_c_[p] + part.jacobian_row[e]) * width;
+        const int order = part.columns.order(part.jacobian_column[e]);
+        for (int l = 0; l < knots_.knots_of(group); ++l)
+          at[l] = std::max(at[l], std::fabs(slope[l]) * knots_.reach(group, l, order));
       }
+    }
+    for (const KnotRow& row : knot_rows_)
+      for (const KnotRow::Term& term : row.terms)
+        for (int l = 0; l < knots_.knots_of(group); ++l) {
+          const int r = row.row[group * width + l];
+          const double size = std::fabs(term.factor) * largest[(first_c_[term.part] + term.output) * width + l];
+          if (r >= 0) sizes[r] = std::max(sizes[r], size);
+        }
+  }
 }
 
 bool KernelNlp::drop_curvature() {

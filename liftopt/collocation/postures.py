@@ -70,11 +70,11 @@ class PostureSolver:
         self.kinematics = InverseKinematics(self.problem)
         self._workers = workers
         self._at_pose: dict[bytes, Problem] = {}
-        fitting = like is not None and self.problem.interchangeable(like.problem)
-        self._solvers: list[Solver] = [*like._solvers] if like and fitting else []
+        fitting = like if like and self.problem.interchangeable(like.problem) else None
+        self._solvers: list[Solver] = [*fitting._solvers] if fitting else []
+        options = BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH)
         try:
             while len(self._solvers) < workers:
-                options = BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH)
                 self._solvers.append(Banded(self.problem, options, say))
         except SolverError:  # IPOPT's linear solver takes one solve at a time
             self._solvers = self._solvers or [Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))]

@@ -26,9 +26,8 @@ def plot_scaling(details: dict[str, Any], path: Path) -> None:
         axes.loglog(meshes, times[0] * meshes / meshes[0], "--", color=colour, linewidth=0.8)
         for n, ms, iterations in zip(meshes, times, details[name]["iterations"], strict=True):
             axes.annotate(f"{iterations} it.", (n, ms), (0, 6), textcoords="offset points", ha="center", fontsize=7)
-    if "stepwise_ms" in details.get("banded", {}):
-        times, label = details["banded"]["stepwise_ms"], "banded, from mesh to mesh"
-        axes.loglog(meshes, times, marker="^", color="#c8553d", label=label)
+    stepwise = details["banded"]["stepwise_ms"]
+    axes.loglog(meshes, stepwise, marker="^", color="#c8553d", label="banded, from mesh to mesh")
     axes.set_xticks(meshes)
     axes.xaxis.set_major_formatter(ScalarFormatter())
     axes.xaxis.set_minor_formatter(NullFormatter())

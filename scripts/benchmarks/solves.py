@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from itertools import pairwise
+import time
 from typing import Any
 
 import numpy as np
 
-from benchmarks.case import Case, Timing, measure, repeat
+from benchmarks.case import PATIENCE, Case, Timing, measure, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import Varied, table5, varied_scenarios
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import FEWEST
-from liftopt.collocation.transfer import transfer, transfer_multipliers
-from liftopt.refinement import meshes_below
+from liftopt.plan import Plan
+from liftopt.refinement import meshes_below, neighbour
 from liftopt.replan import Replanner
 from liftopt.scenario import Scenario, with_overrides
 from liftopt.scene import agents_of, object_of, task_of
+from liftopt.workshop import Workshop
 
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
 MIXES, MIXES_SEED = 100, 3
@@ -117,17 +117,16 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     for intervals in meshes:
         steps = [_stepwise(varied, intervals, repeats) for varied in lifts]
         found["stepwise_ms"].append(float(np.mean([1e3 * timing.median for timing, _ in steps])))
-        last = [results[-1].iterations for _, results in steps]
+        last = [plan.result.iterations for _, plan in steps if plan]
         found["stepwise_iterations"].append(float(np.mean(last)))
-        found["not_converged"] += [intervals for _, results in steps if not all(r.converged for r in results)]
+        found["not_converged"] += [intervals] * (len(steps) - len(last))
     an_interval = np.array(found["ms"]) / np.array(meshes)
     an_iteration = an_interval / np.array(found["iterations"])
     ratio, clean = (float(values.max() / values.min()) for values in (an_interval, an_iteration))
     note = f"{', '.join(f'{t:.0f}' for t in found['ms'])} ms, mean of {len(lifts)} lifts; "
     note += f"{', '.join(f'{n:.0f}' for n in found['iterations'])} iterations; by iteration and interval "
-    note += (
-        f"max / min {clean:.2f}; from mesh to mesh {', '.join(f'{t:.0f}' for t in found['stepwise_ms'])} ms in all, "
-    )
+    note += f"max / min {clean:.2f}; "
+    note += f"from mesh to mesh {', '.join(f'{t:.0f}' for t in found['stepwise_ms'])} ms in all, "
     note += f"the last in {', '.join(f'{n:.0f}' for n in found['stepwise_iterations'])} iterations"
     if found["not_converged"]:
         note += f"; not converged at N = {found['not_converged']}"
@@ -135,23 +134,22 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     return Row(ratio, note, {"iterations": counted}, details)
 
 
-def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, list[SolverResult]]:
+def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Plan | None]:
     """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before.
 
     Returns:
-        the times of all together, and the result on each mesh.
+        the times of all together, and the optimum on the last; None where one mesh has none.
     """
-    meshes = [n for n in (*meshes_below(intervals), intervals) if n >= FEWEST]
-    cases = [Case.of(varied.scenario(), varied.ends, n) for n in meshes]
-    solvers = [case.solver("banded") for case in cases]
+    coarsest, *finer = (n for n in (*meshes_below(intervals), intervals) if n >= FEWEST)
+    case, workshop = Case.of(varied.scenario(), varied.ends, coarsest), Workshop()
+    solver = case.solver("banded")
 
-    def solve() -> list[SolverResult]:
-        results = [cases[0].solve(solvers[0])]
-        for (coarse, fine), solver in zip(pairwise(cases), solvers[1:], strict=True):
-            x = transfer(coarse.problem, coarse.spline, results[-1].x, fine.problem, fine.spline)
-            warm = transfer_multipliers(coarse.problem, results[-1].multipliers, fine.problem)
-            results.append(replace(fine, start=x).solve(solver, warm=warm))
-        return results
+    def solve() -> Plan | None:
+        result = case.solve(solver)
+        plan = Plan(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
+        for n in finer:
+            plan = plan and neighbour(workshop, plan, n, ("banded",), time.monotonic() + PATIENCE, print)
+        return plan
 
     return repeat(repeats, solve)
 
