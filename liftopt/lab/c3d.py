@@ -95,7 +95,7 @@ def _content(path: Path) -> bytes:
 
 def _bounded(block: int, size: int) -> int:
     """Return where parameters must have ended: at the frames, if the header says where these start."""
-    return BLOCK * (block - 1) if 2 < block and BLOCK * (block - 1) <= size else size
+    return BLOCK * (block - 1) if block > 2 and BLOCK * (block - 1) <= size else size
 
 
 def _check(source: str, stated: int, layout: FrameLayout) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from liftopt.errors import NO_VALUE, InputError
+from liftopt.errors import InputError
 from liftopt.lab.c3d_parameters import BLOCK, MIPS, C3dHeader, C3dParameters, floats
 from liftopt.lab.recording import Array
 
@@ -164,4 +164,4 @@ def data_start(source: str, header: C3dHeader, parameters: C3dParameters, size: 
     for block in blocks:
         if block > 1 and BLOCK * (block - 1) <= size:
             return BLOCK * (block - 1)
-    raise InputError(source, blocks[0], f"is where its frames should start, in blocks of {BLOCK} bytes: not in the file")
+    raise InputError(source, blocks[0], f"is the block of {BLOCK} bytes where its frames should start: not in the file")

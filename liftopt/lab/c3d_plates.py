@@ -6,7 +6,7 @@ import numpy as np
 
 from liftopt.lab.c3d_parameters import C3dParameters
 from liftopt.lab.length_units import metres_of
-from liftopt.lab.recording import Array, AnalogChannels, ForcePlate
+from liftopt.lab.recording import AnalogChannels, Array, ForcePlate
 
 CHANNELS = {1: 6, 2: 6, 3: 8, 4: 6}  # of a plate of each type
 

@@ -236,7 +236,9 @@ def _check_size(recording: Recording, scale: float, units: str | None) -> None:
     key, value = ("units", units) if units else (recording.source, recording.units)
     if not SMALLEST_CLOUD <= typical * scale <= LARGEST_CLOUD:
         fitting = [name for name in ("m", "cm", "mm") if SMALLEST_CLOUD <= typical * METRES[name] <= LARGEST_CLOUD]
-        remedy = f"; the mapping's units = \"{fitting[0]}\" would make it {typical * METRES[fitting[0]]:.2f} m" if fitting else ""
+        remedy = ""
+        if fitting:
+            remedy = f"; the mapping's units = \"{fitting[0]}\" would make it {typical * METRES[fitting[0]]:.2f} m"
         raise InputError(
             key,
             value,

@@ -28,7 +28,7 @@ def read_trc(path: Path) -> Recording:
     """
     lines, notes = read_lines(path, WHAT)
     source = str(path)
-    head = next(line for line in lines if line.filled)
+    head = next((line for line in lines if line.filled), lines[0])
     if not " ".join(head.fields).lower().startswith("pathfiletype"):
         raise head.error(" ".join(head.fields), f"{WHAT} starts with PathFileType")
     start = next((i for i, line in enumerate(lines) if _begins_with(line, "frame#")), None)
