@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.c3d_frames import FrameLayout, data_start, frame_layout, frame_numbers, stated_frames
+from liftopt.lab.c3d_frames import LAST_COUNTED, FrameLayout, data_start, frame_layout, frame_numbers, stated_frames
 from liftopt.lab.c3d_parameters import BLOCK, C3dHeader, C3dParameters, parameter_start, read_header
 from liftopt.lab.c3d_plates import force_plates
 from liftopt.lab.recording import TO_Z_UP, AnalogChannels, Array, ForcePlate, Recording, checked_recording
@@ -47,7 +47,7 @@ def read_c3d(path: Path) -> Recording:
     if not frames:
         raise InputError(source, NO_VALUE, f"is cut short: no frame is left of the {stated} of its header")
     named = header.last - header.first + 1
-    if frames != stated or (named != stated and named < 65535 - header.first):
+    if frames != stated or (named != stated and 0 < named < LAST_COUNTED - header.first):
         of_header = stated if frames != stated else named
         notes.append(
             f"the header says {of_header} frames, the file holds {frames}: it is cut short or mislabelled"

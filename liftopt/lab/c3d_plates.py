@@ -39,7 +39,7 @@ def _plate(parameters: C3dParameters, analog: AnalogChannels, k: int, metres: fl
     corners = _of(parameters, "CORNERS", k, 12).reshape(4, 3)
     axes = _axes(corners, k)
     origin = _of(parameters, "ORIGIN", k, 3)
-    # From the surface down to the transducer; some makers state the way back.
+    # From the transducer to the middle of the surface, against the plate's Z; some makers state the way back.
     origin = -origin if origin[2] > 0.0 else origin
     middle = corners.mean(axis=0)
     if kind == 4:
