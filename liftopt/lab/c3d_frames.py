@@ -78,7 +78,7 @@ def frame_layout(
         replace(first, scale=second.scale),
     )
     fits = [one for one in (first, second, *mixed) if one.size and 0 <= available - frames * one.size < BLOCK]
-    usable = [one for one in (first, second) if one.points]
+    usable = [one for one in (first, second, *mixed) if one.points and one.size <= available]
     chosen = (fits or usable or [first])[0]
     notes = []
     if used is not None and used != header.points:

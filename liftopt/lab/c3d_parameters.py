@@ -189,7 +189,8 @@ def floats(data: bytes, processor: int) -> Array:
         exponent = (bits >> 23 & 0xFF).astype(int)
         size = np.ldexp(1.0 + (bits & 0x7FFFFF) / 2.0**23, exponent - 129)
         return np.where(exponent == 0, 0.0, np.where(bits >> 31, -size, size))
-    return np.frombuffer(data, ">f4" if processor == MIPS else "<f4").astype(float)
+    with np.errstate(invalid="ignore"):  # signalling NaNs, which damage makes
+        return np.frombuffer(data, ">f4" if processor == MIPS else "<f4").astype(float)
 
 
 def text_of(data: bytes) -> str:

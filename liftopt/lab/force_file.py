@@ -65,8 +65,12 @@ def read_forces(path: Path, calibration: Calibration | None = None, unloaded: fl
     marks, more = _marks(table)
     trials = []
     preload, taken = np.zeros(len(names)), ""
-    for mark in filter(None, dict.fromkeys(marks)):
-        rows = np.flatnonzero([one == mark for one in marks])
+    blocks: dict[Mark, list[int]] = {}
+    for row, mark in enumerate(marks):
+        if mark:
+            blocks.setdefault(mark, []).append(row)
+    for mark, block in blocks.items():
+        rows = np.array(block)
         if mark[0] == PRELOAD:
             preload, taken = _mean(table, names, force[rows], flags[rows]), f"{PRELOAD} {mark[1]}"
             continue

@@ -88,7 +88,10 @@ def read_sensor_table(path: Path, what: str) -> SensorTable:
         notes.append(f"line {rows[-1].number} ends after {len(rows[-1].fields)} of {count} fields: left out")
         rows = rows[:-1]
     # A separator behind the last value, as sketches and spreadsheets write it, starts no column.
-    rows = [replace(line, fields=line.fields[:count]) if len(line.filled) <= count else line for line in rows]
+    rows = [
+        replace(line, fields=line.fields[:count]) if len(line.filled) <= count < len(line.fields) else line
+        for line in rows
+    ]
     for line in rows:
         if len(line.fields) != count:
             hint = "; where commas are decimal, semicolons must separate the fields" if delimiter == "," else ""
