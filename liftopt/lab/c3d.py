@@ -35,7 +35,7 @@ def read_c3d(path: Path) -> Recording:
     parameters = C3dParameters(content[:start], header.processor)
     if parameters.damage:
         notes.append(f"its parameters are damaged or incomplete: {parameters.damage}")
-    start = data_start(source, header, parameters, len(content))
+    start = data_start(source, header, parameters, content)
     available = len(content) - start
     layout, more = frame_layout(header, parameters, stated_frames(header, parameters, available, 0)[0], available)
     notes += more
@@ -52,7 +52,7 @@ def read_c3d(path: Path) -> Recording:
         notes.append(
             f"the header says {of_header} frames, the file holds {frames}: it is cut short or mislabelled"
         )
-    rate = _rate(header, parameters)
+    rate = _rate(header, parameters, notes)
     analog, more = _analog(raw, layout, rate, parameters, unsigned)
     units = next(iter(parameters.texts("POINT", "UNITS")), "")
     screen = next(iter(parameters.texts("POINT", "Y_SCREEN")), "").replace("+", "").upper()
@@ -105,12 +105,13 @@ def _check(source: str, stated: int, layout: FrameLayout) -> None:
         raise InputError(source, NO_VALUE, "states no frames, neither in its header nor in POINT:FRAMES")
 
 
-def _rate(header: C3dHeader, parameters: C3dParameters) -> float:
+def _rate(header: C3dHeader, parameters: C3dParameters, notes: list[str]) -> float:
     stated = parameters.numbers("POINT", "RATE")
-    for rate in (float(stated[0]) if stated is not None else 0.0, header.rate):
-        if np.isfinite(rate) and rate > 0.0:
-            return rate
-    return header.rate
+    rates = [float(stated[0])] if stated is not None else []
+    usable = [rate for rate in (*rates, header.rate) if np.isfinite(rate) and rate > 0.0]
+    if len(usable) == 2 and abs(usable[0] - usable[1]) > 1e-3 * usable[0]:
+        notes.append(f"POINT:RATE is {usable[0]:g} Hz, the header says {usable[1]:g} Hz: the first is taken")
+    return usable[0] if usable else header.rate
 
 
 def _analog(

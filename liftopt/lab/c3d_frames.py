@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from liftopt.errors import InputError
-from liftopt.lab.c3d_parameters import BLOCK, MIPS, C3dHeader, C3dParameters, floats
+from liftopt.lab.c3d_parameters import BLOCK, MIPS, C3dHeader, C3dParameters, floats, parameter_start
 from liftopt.lab.recording import Array
 
 LAST_COUNTED = 65535  # frames: where the 16 bits of the header end
@@ -71,6 +71,11 @@ def frame_layout(
         first = replace(first, scale=second.scale if second.scale else -1.0)
     if not np.isfinite(second.scale) or not second.scale:
         second = replace(second, scale=first.scale)
+    notes = []
+    if first.scale > 0.0 and second.scale > 0.0:
+        if abs(first.scale - second.scale) > 1e-3 * second.scale:
+            notes.append(f"POINT:SCALE is {second.scale:g}, the header says {first.scale:g}: the first is taken")
+        first = replace(first, scale=second.scale)
     # The parameters may be right in one of these and wrong in another.
     mixed = (
         replace(first, points=second.points),
@@ -80,7 +85,6 @@ def frame_layout(
     fits = [one for one in (first, second, *mixed) if one.size and 0 <= available - frames * one.size < BLOCK]
     usable = [one for one in (first, second, *mixed) if one.points and one.size <= available]
     chosen = (fits or usable or [first])[0]
-    notes = []
     if used is not None and used != header.points:
         notes.append(f"POINT:USED is {used}, the header says {header.points} points: {chosen.points} are read")
     if used is None and header.points:
@@ -154,14 +158,16 @@ def frame_numbers(
     return points[:, :, :3], points[:, :, 3], channels
 
 
-def data_start(source: str, header: C3dHeader, parameters: C3dParameters, size: int) -> int:
-    """Return the byte of the first frame.
+def data_start(source: str, header: C3dHeader, parameters: C3dParameters, content: bytes) -> int:
+    """Return the byte of the first frame: of the header, of POINT:DATA_START, or behind the parameters' blocks.
 
     Raises:
-        InputError: neither header nor parameters name one within the file.
+        InputError: none of them is within the file.
     """
-    blocks = (header.data_block, parameters.count("POINT", "DATA_START") or 0)
+    section = parameter_start(content)
+    behind = section // BLOCK + 1 + content[section + 2]
+    blocks = (header.data_block, parameters.count("POINT", "DATA_START") or 0, behind if content[section + 2] else 0)
     for block in blocks:
-        if block > 1 and BLOCK * (block - 1) <= size:
+        if block > 2 and BLOCK * (block - 1) < len(content):
             return BLOCK * (block - 1)
     raise InputError(source, blocks[0], f"is the block of {BLOCK} bytes where its frames should start: not in the file")

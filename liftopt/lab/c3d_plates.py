@@ -28,7 +28,8 @@ def force_plates(parameters: C3dParameters, analog: AnalogChannels, unit: str) -
         raise ValueError(f"USED is {used}")
     if used and metres is None:
         raise ValueError(f"the unit of length {unit!r} is not known")
-    return tuple(_plate(parameters, analog, k, metres or 1.0) for k in range(used))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a plate that nobody stands on has no centre
+        return tuple(_plate(parameters, analog, k, metres or 1.0) for k in range(used))
 
 
 def _plate(parameters: C3dParameters, analog: AnalogChannels, k: int, metres: float) -> ForcePlate:
@@ -56,8 +57,7 @@ def _plate(parameters: C3dParameters, analog: AnalogChannels, k: int, metres: fl
         else:
             # About the middle of the surface, from that about the transducer.
             force, moment = values[:, :3], values[:, 3:] + np.cross(values[:, :3], origin)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            flat = np.stack([-moment[:, 1] / force[:, 2], moment[:, 0] / force[:, 2]], axis=1)
+        flat = np.stack([-moment[:, 1] / force[:, 2], moment[:, 0] / force[:, 2]], axis=1)
         place = np.concatenate([flat, np.zeros((len(values), 1))], axis=1)
     return ForcePlate(
         rate=analog.rate,

@@ -113,6 +113,28 @@ def test_no_analog_group_where_the_header_counts_channels(c3d_file: Any, plain_p
     np.testing.assert_allclose(found.points, plain_points(), rtol=1e-6)
 
 
+def test_two_rates_and_two_scales_are_noted(c3d_file: Any, plain_points: Any, tmp_path: Path) -> None:
+    c3d_file.floats = False
+    content = bytearray(c3d_file.content())
+    content[12:16], content[20:24] = np.float32(0.7).tobytes(), np.float32(60.0).tobytes()
+    path = tmp_path / "a.c3d"
+    path.write_bytes(content)
+    found = read_c3d(path)
+    np.testing.assert_allclose(found.points, plain_points(), atol=1e-4)
+    assert found.rate == 100.0
+    assert found.notes == (
+        "POINT:SCALE is 0.1, the header says 0.7: the first is taken",
+        "POINT:RATE is 100 Hz, the header says 60 Hz: the first is taken",
+    )
+
+
+def test_where_frames_start_follows_from_the_parameters(c3d_file: Any, plain_points: Any, tmp_path: Path) -> None:
+    """Neither the header nor POINT:DATA_START says it: the section of parameters counts its own blocks."""
+    _header(8, 0)(c3d_file)
+    _without("POINT", "DATA_START")(c3d_file)
+    np.testing.assert_allclose(read_c3d(c3d_file.write(tmp_path / "a.c3d")).points, plain_points(), rtol=1e-6)
+
+
 def test_offsets_without_a_sign(c3d_file: Any, tmp_path: Path) -> None:
     """16 bits around 32768, as converters of 16 bits count."""
     c3d_file.floats = False
