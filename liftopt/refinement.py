@@ -93,7 +93,7 @@ def neighbour(
         told: hears of the optimum, or that the rival stays the best, with the name of the start.
         afresh: start from the motion alone, not from its multipliers as well.
     """
-    spline, scenario = RestToRestSpline(intervals), plan.scenario
+    spline, scenario = plan.spline.on(intervals), plan.scenario
     problem = workshop.problem(scenario, spline, say)
     start = transfer(plan.problem, plan.spline, plan.result.x, problem, spline)
     warm = None if afresh else transfer_multipliers(plan.problem, plan.result.multipliers, problem)
@@ -120,9 +120,9 @@ def compared(plan: Plan, other: Plan) -> Accuracy:
     known, apart = Accuracy.between_knots(plan.verification), distance(plan, other)
     known = replace(known, intervals=other.spline.intervals, apart=apart)
     here, there = plan.result.objective, other.result.objective
-    slope = (there - here) / (plan.spline.intervals / other.spline.intervals - 1)
-    limit = here - slope
-    if apart > SAME_MOTION or slope < 0 or limit <= 0:
+    ratio = plan.spline.intervals / other.spline.intervals
+    limit = here - (there - here) / (ratio**plan.spline.order - 1)
+    if apart > SAME_MOTION or limit <= 0:
         return replace(known, remark=OTHER_MOTION.format(intervals=other.spline.intervals))
     return replace(known, objective_limit=limit, objective_error=here / limit - 1, remark="")
 

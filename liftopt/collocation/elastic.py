@@ -207,8 +207,7 @@ class SoftProblem(Problem):
             unit = "N" if block.name == "friction" else "Nm"
             who = [f"{block.who} {label}" for label in block.labels]
         elif block.name == "velocity":
-            n = len(self.mesh.slope)
-            phase = (np.arange(n) + 1.0) / (n + 1)
+            phase = self.mesh.slope_phase
             share, amounts = amounts / block.upper.reshape(amounts.shape), amounts / task.duration
             unit = "rad/s"
             if block.who not in names:

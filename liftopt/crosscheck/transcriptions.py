@@ -29,7 +29,7 @@ from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
 from liftopt.interpolation import refined
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import agents_of, motions_of, object_of, task_of
 from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -117,7 +117,7 @@ def mesh_study(
 
 def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Problem, RestToRestSpline, SolverResult]:
     """Return the solve's own optimum on another mesh, started from the solution."""
-    spline = RestToRestSpline(intervals)
+    spline = motions_of(solution.scenario, intervals)
     problem = Problem(team, task_of(solution.scenario), spline.mesh())
     dense = refined(solution, max(4, 4 * intervals // solution.intervals))
     coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.held.pose])
