@@ -109,6 +109,36 @@ def test_bags_read_back_by_rosbags_hold_the_same_numbers(folder, trajectory, nam
     assert goal.goal_time_tolerance.sec + 1e-9 * goal.goal_time_tolerance.nanosec == GOAL_TIME
 
 
+@pytest.mark.parametrize("name", ["trajectory_ros2", "trajectory_mcap"])
+def test_metadata_is_what_humble_iron_and_jazzy_decode(folder, name):
+    """Oracle: rosbag2_storage's decoding, which throws where a text or a number is anything else.
+
+    Humble and Iron take the offered QoS for a text whatever the version says; Jazzy does up to version 8.
+    """
+    from rosbags.rosbag2 import Reader
+    from ruamel.yaml import YAML
+
+    bag = YAML(typ="safe").load((folder / name / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    assert bag["version"] == 8
+    texts = [bag[key] for key in ("storage_identifier", "compression_format", "compression_mode", "ros_distro")]
+    counts = [bag["message_count"], bag["duration"]["nanoseconds"], bag["starting_time"]["nanoseconds_since_epoch"]]
+    texts += bag["relative_file_paths"]
+    for topic in bag["topics_with_message_count"]:
+        data = topic["topic_metadata"]
+        keys = ("name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash")
+        texts += [data[key] for key in keys]
+        counts.append(topic["message_count"])
+    for file in bag["files"]:
+        texts.append(file["path"])
+        counts += [file["message_count"], *file["duration"].values(), *file["starting_time"].values()]
+    assert all(isinstance(text, str) for text in texts)
+    assert all(isinstance(count, int) and count >= 0 for count in counts)
+    assert isinstance(bag["custom_data"] or {}, dict)
+    with Reader(folder / name) as reader:  # what the storage itself keeps of it
+        assert [connection.ext.offered_qos_profiles for connection in reader.connections] == [[], []]
+        assert reader.message_count == bag["message_count"] == 2
+
+
 def test_csv_and_json_read_back_hold_the_same_numbers(folder, trajectory):
     with (folder / "trajectory.csv").open(newline="") as file:
         header, *rows = csv.reader(file)
