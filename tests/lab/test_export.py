@@ -18,7 +18,7 @@ from liftopt.cli import BAD_INPUT, SOLVED, main
 from liftopt.errors import InputError
 from liftopt.lab import trajectory_files
 from liftopt.lab.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
-from liftopt.lab.robot_limits import check_limits, check_motion, check_start, read_pose
+from liftopt.lab.robot_limits import check_limits, check_motion, read_pose
 from liftopt.multibody.dh import rotation_z, translation
 from liftopt.multibody.sawyer import sawyer_limits
 from liftopt.multibody.sawyer_description import FLANGE_IN_LAST_LINK, described_frames
@@ -183,12 +183,7 @@ def test_a_limit_that_is_passed_names_joint_time_and_amount(result):
         check_limits(replace(solution, agents=(human, pushed)))
 
 
-def test_a_start_too_far_from_the_arm_and_an_end_that_moves_are_refused(trajectory):
-    pose = trajectory.position[0] + [0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0]
-    assert check_start(trajectory, pose) == pytest.approx(0.3)
-    pose[5] -= 1.2
-    with pytest.raises(InputError, match=r"right_j5 is 1\.200 rad from the motion's start"):
-        check_start(trajectory, pose)
+def test_an_end_that_moves_is_refused(trajectory):
     check_motion(trajectory)
     velocity = trajectory.velocity.copy()
     velocity[-1, 2] = 0.01
