@@ -115,6 +115,12 @@ def test_the_goal_counts_before_the_motion(plan: Plan) -> None:
     )
 
 
+def test_the_readme_names_the_topics_to_record() -> None:
+    """Its command must catch what a comparison looks for, in a bag that is begun before the exported one is played."""
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    assert f"rosbag record -O trial_1 /robot/joint_states {GOAL_TOPIC}\nrosbag play robot/trajectory.bag" in readme
+
+
 def bag(path: Path, plan: Plan, sent: float, late: float, **heard: Any) -> Path:
     """Write what ``rosbag record -a`` keeps of a follower that is late, without the goal; times since its begin [s]."""
     from rosbags.typesys import get_types_from_msg
