@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.interpolation import linear
-from liftopt.lab.robot_record import RobotRecord
+from liftopt.lab.robot_record import SHORT, RobotRecord
 from liftopt.lab.trajectory_files import GOAL_TOPIC
 
 Array = npt.NDArray[np.float64]
@@ -24,6 +24,7 @@ REST, STILL = 0.2, MOVED / 2  # within STILL [rad] for REST [s], the arm rests
 EARLIER = 1.0  # [s]: rest is looked for up to this before the best fit, which an arm that falls behind shifts
 # A goal that comes this much after its recorder subscribed is caught [s]: if it was missed, the recorder was just late.
 CONNECTED = 0.5
+TOGETHER = 0.1  # [s]: trajectory and goal, sent at once
 RECORD = f"rosbag record /robot/joint_states {GOAL_TOPIC}"
 
 
@@ -38,9 +39,12 @@ def lift_start(record: RobotRecord, time: Array, q: Array) -> tuple[float, str, 
     Raises:
         InputError: the record is shorter than the lift, or its arm does not move.
     """
-    if record.sent is not None:
-        return record.sent, record.told_by, ""
+    if record.sent and record.sent[-1] - record.sent[0] < TOGETHER:
+        return record.sent[-1], record.told_by, ""
     start = motion_start(record, time, q)
+    if record.sent:  # to its start, the lift, and back, it may be
+        before = [sent for sent in record.sent if sent <= start + SHORT]
+        return before[-1] if before else record.sent[0], record.told_by, ""
     how = "where it moves as the prediction does at its start"
     hint = f"its goal is not in the bag; start `{RECORD}` before the goal is sent"
     if record.missed is not None and 0.0 <= start - record.missed <= CONNECTED:

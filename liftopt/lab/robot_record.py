@@ -40,7 +40,7 @@ class RobotRecord:
         time: (K,) since its first joint state, on the recorder's clock [s].
         q: (K, 7) angles [rad].
         tau: (K, 7) efforts, as they were recorded but for the joints' signs [Nm]; None if the bag has none.
-        sent: when the last trajectory or goal was sent [s]; None where the bag does not say.
+        sent: when trajectories or goals were sent, in order [s]; empty where the bag does not say.
         told_by: how that is known, in words.
         missed: when the recorder subscribed to the goal's topic, where it then caught no goal [s]; else None.
     """
@@ -49,7 +49,7 @@ class RobotRecord:
     time: Array
     q: Array
     tau: Array | None
-    sent: float | None = None
+    sent: tuple[float, ...] = ()
     told_by: str = ""
     missed: float | None = None
 
@@ -96,15 +96,14 @@ def read_robot_record(path: Path) -> RobotRecord:
     efforts = [rows[k][2] for k in order]
     tau = None if any(len(effort) == 0 for effort in efforts) else JOINT_SIGNS * np.stack(efforts)
 
-    def since(moment: int | None) -> float | None:
-        return None if moment is None else (moment - int(stamp[0])) / SECOND
+    def since(moments: list[int]) -> tuple[float, ...]:
+        return tuple((moment - int(stamp[0])) / SECOND for moment in sorted(moments))
 
     sent, told_by = heard.sent
-    if sent is not None and sent > stamp[-1]:
+    if sent and min(sent) > stamp[-1]:
         raise InputError(where, NO_VALUE, "ends before the trajectory was sent")
-    return RobotRecord(
-        str(path), (stamp - stamp[0]) / SECOND, q, tau, since(sent), told_by, since(min(heard.subscribed, default=None))
-    )
+    missed = next(iter(since(heard.subscribed)), None)
+    return RobotRecord(str(path), (stamp - stamp[0]) / SECOND, q, tau, since(sent), told_by, missed)
 
 
 @dataclass
@@ -124,14 +123,12 @@ class _Heard:
     subscribed: list[int] = field(default_factory=list)
 
     @property
-    def sent(self) -> tuple[int | None, str]:
-        """When the last trajectory was sent, and how that is known."""
+    def sent(self) -> tuple[list[int], str]:
+        """When trajectories were sent, and how that is known."""
         if self.commands:
-            return max(self.commands), "when the trajectory was sent"
-        if self.followed:
-            begun = max(round(float(np.median(moments))) for moments in self.followed.values())
-            return begun, "when the action server began, as its feedback says"
-        return None, ""
+            return self.commands, "when the trajectory was sent"
+        begun = [round(float(np.median(moments))) for moments in self.followed.values()]
+        return begun, "when the action server began, as its feedback says"
 
     def hear(self, topic: str, kind: str, arrived: int, message: Any) -> None:
         """Take in one message of the kinds in ``HEARD``."""

@@ -76,10 +76,10 @@ def test_a_bag_is_read_back_in_the_signs_of_table_3(solution: Solution, tmp_path
     record = read_robot_record(bag(tmp_path / "trial", states(solution), kind))
     dense = refined(solution, 10)
     robot = dense.agents[1]
-    assert record.tau is not None and record.sent is not None
+    assert record.tau is not None
     assert record.told_by == "when the trajectory was sent"
     share = dense.time / dense.time[-1]
-    q, tau = (record.over_share(values, share, record.sent, 2.0) for values in (record.q, record.tau))
+    q, tau = (record.over_share(values, share, record.sent[0], 2.0) for values in (record.q, record.tau))
     np.testing.assert_allclose(q, robot.q[:, robot.moving], atol=1e-9)
     np.testing.assert_allclose(tau, robot.tau[:, robot.moving], atol=1e-9)
 
@@ -88,7 +88,7 @@ def test_a_bag_is_read_back_in_the_signs_of_table_3(solution: Solution, tmp_path
 def test_stamps_are_brought_to_the_recorders_clock(solution: Solution, tmp_path: Path, clock: float | None) -> None:
     """Stamps of a publisher without a clock, or with one that is ahead of the recorder's, tell the same lift."""
     record = read_robot_record(bag(tmp_path / "trial", states(solution), clock=clock))
-    assert record.sent == pytest.approx(0.5, abs=1e-9)  # states() begins half a second before the goal
+    assert record.sent == pytest.approx((0.5,), abs=1e-9)  # states() begins half a second before the goal
     np.testing.assert_allclose(np.diff(record.time), 1 / RATE, atol=1e-9)
 
 
@@ -122,7 +122,7 @@ def test_what_efforts_may_mean(solution: Solution, sign: float, beyond_gravity: 
     data = model.createData()
     weight = np.array([pin.computeGeneralizedGravity(model, data, q) for q in robot.q])
     tau = sign * (robot.tau - beyond_gravity * weight)[:, robot.moving]
-    record = RobotRecord("made up", dense.time, robot.q[:, robot.moving], tau, 0.0)
+    record = RobotRecord("made up", dense.time, robot.q[:, robot.moving], tau, (0.0,))
     found = experiment(solution, robot=[record])
     np.testing.assert_allclose(found.group("robot_torque")[1].trials[0], tau[:, 1], atol=1e-9)
     notes = [note for note in found.notes if "fit the prediction better" in note]
@@ -133,7 +133,7 @@ def test_a_robot_that_ran_another_lift_is_said(solution: Solution) -> None:
     dense = refined(solution, 10)
     q = dense.agents[1].q[:, dense.agents[1].moving]
     for off, said in ((0.0, False), (10.0, True)):
-        record = RobotRecord("made up", dense.time, q + np.radians(off), None, 0.0)
+        record = RobotRecord("made up", dense.time, q + np.radians(off), None, (0.0,))
         notes = experiment(solution, robot=[record]).notes
         assert ("made up: the robot starts 10 deg off the prediction: is it this lift?" in notes) == said
 
@@ -184,6 +184,6 @@ def test_a_bag_that_ends_too_soon(solution: Solution, tmp_path: Path) -> None:
 def test_a_bag_that_begins_too_late(solution: Solution) -> None:
     dense = refined(solution, 10)
     q = dense.agents[1].q[:, dense.agents[1].moving]
-    record = RobotRecord("made up", dense.time, q, None, sent=-0.3)
+    record = RobotRecord("made up", dense.time, q, None, sent=(-0.3,))
     with pytest.raises(InputError, match=r"begins 0\.30 s after the lift does"):
         record.over_share(q, dense.time / 2.0, -0.3, 1.5)

@@ -105,7 +105,7 @@ def test_what_is_no_lift_is_refused(plan: Plan) -> None:
 
 def test_the_goal_counts_before_the_motion(plan: Plan) -> None:
     record = trial(plan, 3.1)
-    told = RobotRecord("made up", record.time, record.q, None, sent=3.0, told_by="so", missed=3.05)
+    told = RobotRecord("made up", record.time, record.q, None, sent=(3.0,), told_by="so", missed=3.05)
     assert lift_start(told, *plan) == (3.0, "so", "")
     start, _, known = lift_start(record, *plan)
     assert start == pytest.approx(3.1, abs=2e-3)
@@ -113,6 +113,15 @@ def test_the_goal_counts_before_the_motion(plan: Plan) -> None:
         "a delay of the whole motion does not show" in known
         and f"rosbag record /robot/joint_states {GOAL_TOPIC}" in known
     )
+
+
+def test_of_several_goals_the_lifts_own_counts(plan: Plan) -> None:
+    """One before to go to the start, one after to go back; the lift's was sent 0.2 s before the arm follows."""
+    record = trial(plan, 4.2, lasts=12.0)
+    told = RobotRecord("made up", record.time, record.q, None, sent=(1.0, 4.0, 7.5), told_by="so")
+    assert lift_start(told, *plan)[0] == 4.0
+    still = RobotRecord("made up", record.time, 0.0 * record.q, None, sent=(4.0, 4.001))
+    assert lift_start(still, *plan)[0] == 4.001  # a trajectory and its goal, of which the arm did nothing
 
 
 def test_the_readme_names_the_topics_to_record() -> None:
@@ -172,7 +181,7 @@ def test_a_recorder_that_just_missed_the_goal_says_when_it_was_sent(
     pytest.importorskip("rosbags", reason="rosbags is in the extra 'lab'")
     subscribed = {"/clock": 0.1, TRAJECTORY_TOPIC: 3.1, GOAL_TOPIC: 3.102}
     record = read_robot_record(bag(tmp_path / "trial", plan, 3.1, late, subscribed=subscribed))
-    assert record.sent is None
+    assert record.sent == ()
     found = experiment(solution, robot=[record])
     assert any("at least as late as its phase says" in note for note in found.notes)
     shifted = np.degrees(_at(plan, 0.01 * np.arange(201.0) - late))
@@ -196,6 +205,6 @@ def test_feedback_of_the_action_server_says_when_it_began(plan: Plan, tmp_path: 
     pytest.importorskip("rosbags", reason="rosbags is in the extra 'lab'")
     ticks = np.arange(200) / RATE
     record = read_robot_record(bag(tmp_path / "arm", plan, 3.1, 0.25, followed=ticks))
-    assert record.sent == pytest.approx(3.1, abs=1e-3) and "feedback" in record.told_by
+    assert record.sent == pytest.approx((3.1,), abs=1e-3) and "feedback" in record.told_by
     gripper = read_robot_record(bag(tmp_path / "other", plan, 3.1, 0.25, followed=ticks, joints=("gripper",)))
-    assert gripper.sent is None
+    assert gripper.sent == ()
