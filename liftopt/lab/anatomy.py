@@ -10,6 +10,7 @@ import numpy.typing as npt
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.marker_map import TRACKED, Labels, MarkerMap
 from liftopt.lab.recording import TO_Z_UP, Recording
+from liftopt.lab.wrist_centre import with_wrist
 from liftopt.lab.rigid import FEWEST, Poses, common_point, fit_poses, mean_shape, were_seen
 
 Array = npt.NDArray[np.float64]
@@ -102,7 +103,7 @@ def skeleton(recording: Recording, mapping: MarkerMap) -> Skeleton:
     """
     segments = {
         name: _segment(recording, name, labels)
-        for name, labels in mapping.by_segment().items()
+        for name, labels in with_wrist(mapping).items()
         if name in ("pelvis", "scapula", *TRACKED)
     }
     trunk = _trunk_frame(segments["trunk"], mapping)

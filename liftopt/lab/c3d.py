@@ -72,6 +72,7 @@ def read_c3d(path: Path) -> Recording:
             analog=analog,
             plates=plates,
             notes=tuple([*notes, *more, *trouble]),
+            events=_events(parameters),
         )
     )
 
@@ -143,6 +144,21 @@ def _each(values: Array | None, count: int, default: float) -> Array:
     if values is not None:
         whole[: len(values)] = values[:count]
     return whole
+
+
+def _events(parameters: C3dParameters) -> tuple[tuple[str, float], ...]:
+    """Return the events by time; C3D has each as minutes and seconds."""
+    times, labels = parameters.numbers("EVENT", "TIMES"), parameters.texts("EVENT", "LABELS")
+    if times is None:
+        return ()
+    pairs = np.ravel(times)[: 2 * (np.size(times) // 2)].reshape(-1, 2)
+    sides = parameters.texts("EVENT", "CONTEXTS")
+    sides += [""] * (len(labels) - len(sides))
+    named = [
+        (f"{side.strip()} {label.strip()}".strip(), float(60.0 * minutes + seconds))
+        for side, label, (minutes, seconds) in zip(sides, labels, pairs, strict=False)
+    ]
+    return tuple(sorted(named, key=lambda one: one[1]))
 
 
 def _plates(

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.force_file import read_forces
+from liftopt.lab.force_file import LARGEST, SECONDS, read_forces
 from liftopt.lab.motion_table import read_motion_table
 from liftopt.lab.recording import TO_Z_UP, Array
 from liftopt.lab.sensor_table import SIGNATURE
-from liftopt.lab.text_file import read_lines
+from liftopt.lab.text_file import Line, read_lines
 
 COLUMNS = ("time", "fx", "fy", "fz")
+UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | dict.fromkeys(COLUMNS[1:], {"N": 1.0, "kN": 1000.0})
+NAMED = re.compile(r"([a-z]+)\s*(?:[\[(](.*)[\])])?", re.IGNORECASE)
+LONGEST_STEP = 0.1  # s between samples, over which a hand's force changes much
+CHANGE = 1.0  # N from sample to sample that may be interpolated over any time
 
 
 @dataclass(frozen=True)
@@ -32,14 +37,37 @@ class HandForce:
     force: Array
 
     def at(self, time: Array) -> tuple[Array, int]:
-        """Return the force (F, 3) at ``time`` (F,) [s], zero outside the series, and how many times are outside."""
+        """Return the force (F, 3) at ``time`` (F,) [s], zero outside the series, and how many times are outside.
+
+        Raises:
+            InputError: all times are outside, or the samples are too far apart to follow a lift.
+        """
         outside = (time < self.time[0]) | (time > self.time[-1])
+        spans = f"{self.time[0]:g} to {self.time[-1]:g} s, the recording from {time[0]:g} to {time[-1]:g} s"
+        if outside.all():
+            raise InputError(
+                self.source,
+                NO_VALUE,
+                f"has no force at any time of the recording: it goes from {spans}; --hand-force-start sets its start",
+            )
+        step = float(np.median(np.diff(self.time)))  # one sample that is not outside has others around it
+        near = (self.time[1:] >= time[0]) & (self.time[:-1] <= time[-1])
+        change = np.abs(np.diff(self.force, axis=0)).max(axis=1)[near].max() if near.any() else 0.0
+        if step > LONGEST_STEP and change > CHANGE:
+            raise InputError(
+                self.source,
+                f"{step:g} s",
+                f"from sample to sample is too long to follow a lift (it goes from {spans}); at most {LONGEST_STEP:g} s."
+                " If the time is in milliseconds, name the column time [ms]",
+            )
         force = np.stack([np.interp(time, self.time, column, left=0.0, right=0.0) for column in self.force.T], axis=1)
         return force, int(outside.sum())
 
 
 def read_hand_force(path: Path, up: str) -> HandForce:
-    """Return the series of a file with the columns time [s], fx, fy, fz [N]; other columns are left aside.
+    """Return the series of a file with the columns time, fx, fy, fz; other columns are left aside.
+
+    A unit may stand behind a column's name, ``time [ms]`` or ``fx [kN]``; without one it is s and N.
 
     A CSV that ``liftopt forces`` wrote is taken for what it measured, a force upwards.
 
@@ -61,7 +89,7 @@ def read_hand_force(path: Path, up: str) -> HandForce:
     if at is None:
         wanted = ", ".join(COLUMNS)
         raise InputError(str(path), NO_VALUE, f"holds nothing but separators; the columns {wanted} are needed")
-    names = tuple(name.lower() for name in lines[at].filled)
+    names, scales = zip(*(_named(name, lines[at]) for name in lines[at].filled), strict=True)
     missing = [name for name in COLUMNS if name not in names]
     if missing:
         wanted = f"has no column {', '.join(missing)}; {', '.join(COLUMNS)} are needed"
@@ -71,7 +99,19 @@ def read_hand_force(path: Path, up: str) -> HandForce:
     values = np.array([[row.number_at(i, names[i]) for i in picked] for row in rows], dtype=float).reshape(
         -1, len(COLUMNS)
     )
+    values = values * [scales[i] for i in picked]
     return _checked(HandForce(str(path), values[:, 0], values[:, 1:]))
+
+
+def _named(text: str, line: Line) -> tuple[str, float]:
+    """Return the name of a column without its unit, and what the unit is in s or N."""
+    match = NAMED.fullmatch(text.strip())
+    if match is None or match[1].lower() not in COLUMNS or match[2] is None:
+        return text.strip().lower(), 1.0
+    units, unit = UNITS[match[1].lower()], match[2].strip()
+    if unit not in units:
+        raise line.error(text, f"the unit of {match[1]} must be {' or '.join(units)}")
+    return match[1].lower(), units[unit]
 
 
 def _of_sensors(path: Path, up: str) -> HandForce:
@@ -92,4 +132,8 @@ def _checked(series: HandForce) -> HandForce:
     if np.any(np.diff(series.time) <= 0.0):
         row = int(np.flatnonzero(np.diff(series.time) <= 0.0)[0]) + 2
         raise InputError(series.source, float(series.time[row - 1]), f"the time must increase; row {row} of the data")
+    if (largest := float(np.abs(series.force).max())) > LARGEST:
+        raise InputError(
+            series.source, f"{largest:g} N", f"is no force of a hand (at most {LARGEST:g} N): are these newtons?"
+        )
     return series

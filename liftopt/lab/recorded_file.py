@@ -89,6 +89,7 @@ def load_recorded(path: str | Path) -> RecordedLift:
             gaps=tuple(Gap(**gap) for gap in about.pop("gaps")),
             notes=tuple(about.pop("notes")),
             carried=tuple(carried) if (carried := about.pop("carried")) else None,
+            lifts=tuple((float(start), float(end)) for start, end in about.pop("lifts", ())),
             **about,
         )
     except (OSError, KeyError, TypeError, ValueError, AttributeError, RuntimeError) as error:
@@ -107,6 +108,7 @@ def about(lift: RecordedLift) -> dict[str, Any]:
         "lengths": asdict(lift.lengths),
         "force_from": lift.force_from,
         "carried": lift.carried,
+        "lifts": lift.lifts,
         "gaps": [asdict(gap) for gap in lift.gaps],
         "notes": lift.notes,
     }

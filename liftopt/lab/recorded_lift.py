@@ -14,20 +14,24 @@ from liftopt.lab.anatomy import Array, skeleton
 from liftopt.lab.c3d import read_c3d
 from liftopt.lab.filtering import low_pass
 from liftopt.lab.findings import findings
-from liftopt.lab.gaps import Gap, fill_gaps
+from liftopt.lab.gaps import Gap, fill_gaps, runs
 from liftopt.lab.hand_force import HandForce
 from liftopt.lab.marker_map import Labels, MarkerMap, mapped_markers
 from liftopt.lab.object_motion import ObjectMotion, load_force, object_motion
+from liftopt.lab.outliers import Outlier, ShapeGroup, check_enough, outlier_notes, shown, without_far_points, without_outliers
 from liftopt.lab.recorded_person import RecordedPerson, recorded_person
 from liftopt.lab.recording import TO_Z_UP, Recording, in_metres
 from liftopt.lab.scaling import scale_subject
 from liftopt.lab.tracking import track
 from liftopt.lab.trc import read_trc
+from liftopt.lab.trial_part import TrialPart, chosen_part, without_ignored
+from liftopt.lab.wrist_centre import WRIST, needs_wrist, with_wrist_centre
 from liftopt.multibody.anthropometry import LinkLengths
 from liftopt.multibody.subject import Subject
 from liftopt.trajectory import agent_trajectory
 
 CUTOFF = 6.0  # Hz, of markers and angles together
+SHOULDER_TRAVEL = 0.1  # m that the acromion may come nearer to a marker of the trunk
 FEWEST_FRAMES = 12  # for the filter and the spline
 READERS = {".c3d": read_c3d, ".trc": read_trc}
 
@@ -72,9 +76,11 @@ class RecordedLift:
         residual: (K, M) distance of each from the model's, NaN where not seen [m].
         elbow_flexion: (K,) between the joint centres that the markers show, without the model [rad].
         object_position, object_quaternion: (K, 3) [m] and (K, 4) x y z w since the first frame, or None.
-        carried: time from and to which the object is away from where it lay [s], or None.
+        carried: time from and to which the object is away from where it lay [s]; None without an object, and where
+            it is lifted several times until one lift is chosen.
         gaps: all gaps of the mapped markers.
         notes: what was repaired or left out, and what the model does not show.
+        lifts: all such times, one for each lift [s].
     """
 
     source: str
@@ -105,6 +111,7 @@ class RecordedLift:
     carried: tuple[float, float] | None
     gaps: tuple[Gap, ...]
     notes: tuple[str, ...]
+    lifts: tuple[tuple[float, float], ...] = ()
 
     @property
     def residual_rms(self) -> Array:
@@ -115,10 +122,32 @@ class RecordedLift:
         """Return ``values`` (K, ...) at ``samples`` times evenly spread over the lift: in normalised time.
 
         The lift is the time in which the object is carried, the whole recording if it has none.
+
+        Raises:
+            InputError: there are several lifts, and none was chosen.
         """
+        if self.carried is None and len(self.lifts) > 1:
+            raise InputError(
+                self.source, NO_VALUE, f"shows {len(self.lifts)} lifts, {self.lift_times()}: choose one by --lift"
+            )
         start, end = self.carried or (self.time[0], self.time[-1])
         rows = linear(self.time, values.reshape(len(self.time), -1), np.linspace(start, end, samples))
         return rows.reshape(samples, *values.shape[1:])
+
+    def lift_times(self) -> str:
+        """Return when each lift is, in words."""
+        return ", ".join(f"{i} from {start:.2f} to {end:.2f} s" for i, (start, end) in enumerate(self.lifts, start=1))
+
+    def of_lift(self, number: int) -> RecordedLift:
+        """Return the same record with the lift of that number, counted from 1, as the one that counts.
+
+        Raises:
+            InputError: there is no such lift.
+        """
+        if not 1 <= number <= len(self.lifts):
+            have = f"1 to {len(self.lifts)}: {self.lift_times()}" if self.lifts else "none: no object is lifted"
+            raise InputError("--lift", number, f"{self.source} has the lifts {have}")
+        return replace(self, carried=self.lifts[number - 1])
 
 
 def read_recording(path: Path) -> Recording:
@@ -134,7 +163,11 @@ def read_recording(path: Path) -> Recording:
 
 
 def recorded_lift(
-    recording: Recording, mapping: MarkerMap, load: Load | None = None, cutoff: float = CUTOFF
+    recording: Recording,
+    mapping: MarkerMap,
+    load: Load | None = None,
+    cutoff: float = CUTOFF,
+    part: TrialPart | None = None,
 ) -> RecordedLift:
     """Return the lift that markers recorded.
 
@@ -143,15 +176,21 @@ def recorded_lift(
         mapping: of its markers.
         load: what the hand carries; None for nothing.
         cutoff: of the low-pass filter [Hz].
+        part: of the trial that is used; None for all of it.
 
     Raises:
-        InputError: recording and mapping do not go together, or the subject is incomplete.
+        InputError: recording and mapping do not go together, markers are where they cannot be in too many frames, or
+            the subject is incomplete.
     """
+    recording, mapping = chosen_part(recording, part or TrialPart()), without_ignored(mapping, part or TrialPart())
     mapped, unused = mapped_markers(recording, mapping)
-    metres = in_metres(mapped, mapping.units or None, mapping.up)
+    metres = in_metres(without_far_points(mapped), mapping.units or None, mapping.up)
     if len(metres.time) < FEWEST_FRAMES:
         raise InputError(recording.source, f"{len(metres.time)} frames", f"must be at least {FEWEST_FRAMES}")
-    filled, gaps = fill_gaps(metres, mapping.by_segment())
+    judged, outliers = _judged(metres, mapping)
+    filled, gaps = fill_gaps(judged, mapping.by_segment())
+    check_enough(filled, mapping.by_segment(), outliers)
+    filled = with_wrist_centre(filled, mapping)
     smooth = replace(filled, points=low_pass(filled.points, filled.rate, cutoff, filters=2))
     found = skeleton(smooth, mapping)
     scaled = scale_subject(found, mapping)
@@ -170,12 +209,16 @@ def recorded_lift(
     )
     q, v, a = _motion(smooth.time, motion.q, smooth.rate, cutoff, limits.q_lower, limits.q_upper)
     trajectory = agent_trajectory(agent, q, v, a, force)
-    notes = [*smooth.notes, *lost, *findings(unused, recording, found, scaled, motion, trajectory.joint_names)]
+    notes = [*smooth.notes, *outlier_notes(smooth, outliers), *lost, *findings(unused, recording, found, scaled, motion, trajectory.joint_names)]
     off = np.degrees(-q[:, trajectory.joint_names.index("human_Q7")] - found.elbow_flexion)
     notes.append(
         "elbow flexion of the model is off that between the joint centres of the markers "
         f"by {_rms(off):.1f} deg (rms), at most {np.nanmax(np.abs(off)):.1f}"
     )
+    lifts = tuple((float(smooth.time[i]), float(smooth.time[j])) for i, j in held.lifts) if held else ()
+    if len(lifts) > 1:
+        times = ", ".join(f"{start:.2f} to {end:.2f} s" for start, end in lifts)
+        notes.append(f"the object is lifted {len(lifts)} times, {times}; between these it lies. Choose one by --lift")
     return RecordedLift(
         source=recording.source,
         rate=smooth.rate,
@@ -202,10 +245,26 @@ def recorded_lift(
         elbow_flexion=found.elbow_flexion,
         object_position=held.position if held else None,
         object_quaternion=held.quaternion if held else None,
-        carried=(float(smooth.time[held.carried[0]]), float(smooth.time[held.carried[1]])) if held else None,
+        carried=lifts[0] if len(lifts) == 1 else None,
         gaps=gaps,
         notes=tuple(notes),
+        lifts=lifts,
     )
+
+
+def _judged(recording: Recording, mapping: MarkerMap) -> tuple[Recording, tuple[Outlier, ...]]:
+    """Return the recording without outliers, and these; a wrist's centre is no better than the forearm's markers."""
+    segments = mapping.by_segment()
+    groups = [ShapeGroup(name, labels, labels) for name, labels in segments.items()]
+    if "scapula" not in segments:
+        acromion = mapping.landmark("acromion_right")
+        groups.append(ShapeGroup("shoulder", (*segments["trunk"], *acromion), acromion, SHOULDER_TRAVEL))
+    if not needs_wrist(mapping):
+        return without_outliers(recording, groups)
+    recording, outliers = without_outliers(recording, [group for group in groups if group.name != "hand"])
+    hand = ShapeGroup("hand", (*segments["hand"], WRIST), segments["hand"])
+    judged, more = without_outliers(with_wrist_centre(recording, mapping), [hand])
+    return replace(recording, points=judged.points[:, :-1]), (*outliers, *more)
 
 
 def _rms(values: Array) -> float:
@@ -230,7 +289,11 @@ def _object(
         return None, []
     points = recording.points[:, [recording.index(label) for label in labels]]
     try:
-        return object_motion(recording.time, person.world.place(points), recording.source), []
+        held = object_motion(recording.time, person.world.place(points), recording.source)
+        if not held.unseen.any():
+            return held, []
+        where = shown(recording, runs(held.unseen))
+        return held, [f"the object is out of sight in {where}: its place there is that before and after"]
     except InputError as error:
         if needed:
             raise

@@ -81,6 +81,7 @@ class Recording:
         analog: analog channels, or None.
         plates: force plates.
         notes: what was repaired or left out, one sentence each.
+        events: name (with its side in front, if it has one) and time [s] of what was marked in the trial.
     """
 
     source: str
@@ -93,6 +94,7 @@ class Recording:
     analog: AnalogChannels | None = None
     plates: tuple[ForcePlate, ...] = ()
     notes: tuple[str, ...] = field(default=())
+    events: tuple[tuple[str, float], ...] = ()
 
     def index(self, label: str) -> int:
         """Return the channel of a marker by its label, or by what follows the last colon (``"Anna:STER"``).
