@@ -48,7 +48,8 @@ def add_mocap_parser(commands: Any, run: Callable[[argparse.Namespace], int]) ->
     parser.add_argument(
         "--hand-force",
         metavar="FILE",
-        help="of the hand on the object: time, fx, fy, fz [s, N] in FILE's axes (CSV, MOT, STO), or of liftopt forces",
+        help="of the hand on the object: time, fx, fy, fz [s, N] in FILE's axes (CSV, MOT, STO), or of liftopt "
+        "forces; a CSV may name units: time [ms], fx [kN]",
     )
     parser.add_argument(
         "--hand-force-start",
@@ -66,6 +67,20 @@ def add_mocap_parser(commands: Any, run: Callable[[argparse.Namespace], int]) ->
     parser.add_argument(
         "--hand-share", type=float, metavar="0-1", default=0.5, help="of the right hand in that (default: %(default)s)"
     )
+    parser.add_argument(
+        "--ignore",
+        action="append",
+        default=[],
+        metavar="MARKER[:FROM-TO]",
+        help="leave a marker out, all the time or from FROM to TO [s]; may be given several times",
+    )
+    parser.add_argument(
+        "--from", dest="start", default="", metavar="S", help="use the trial from this time or C3D event on"
+    )
+    parser.add_argument("--to", dest="end", default="", metavar="S", help="and up to this one")
+    parser.add_argument(
+        "--lift", type=int, metavar="N", help="which lift of the trial counts, from 1, where there are several"
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.set_defaults(run=run)
 
@@ -79,6 +94,7 @@ def mocap(args: argparse.Namespace) -> str:
     from liftopt.lab.marker_map import Person, load_marker_map
     from liftopt.lab.recorded_file import save_recorded
     from liftopt.lab.recorded_lift import Load, read_recording, recorded_lift
+    from liftopt.lab.trial_part import TrialPart, ignored_markers
     from liftopt.multibody.bounds import checked_number
     from liftopt.scenario_schema import section
 
@@ -90,7 +106,11 @@ def mocap(args: argparse.Namespace) -> str:
         mass=checked_number("--object-mass", args.object_mass, 0.0, 100.0, "kg"),
         share=checked_number("--hand-share", args.hand_share, 0.0, 1.0, "of the load"),
     )
-    lift = recorded_lift(read_recording(Path(args.recording)), replace(mapping, subject=person), load, args.cutoff)
+    part = TrialPart(args.start, args.end, ignored_markers(args.ignore))
+    recording = read_recording(Path(args.recording))
+    lift = recorded_lift(recording, replace(mapping, subject=person), load, args.cutoff, part)
+    if args.lift is not None:
+        lift = lift.of_lift(args.lift)
     save_recorded(lift, Path(args.out))
     return (
         json.dumps(summary_dict(lift, Path(args.out)), allow_nan=False) + "\n"
@@ -149,6 +169,8 @@ def _print(lift: RecordedLift, out: str, console: Console) -> None:
         + " m (L1 by stature)"
     )
     say(f"Force of the hand: {lift.force_from}")
+    if len(lift.lifts) > 1:
+        say(f"Lifts: {lift.lift_times()}" + ("" if lift.carried else "; choose one by --lift"))
     if lift.carried:
         say(f"Object: away from its place from {lift.carried[0]:.2f} to {lift.carried[1]:.2f} s")
     for gap_kind, count in Counter(gap.filled for gap in lift.gaps).items():

@@ -137,10 +137,11 @@ def check_enough(
         bad = [one for one in dropped if few[one.first : one.last + 1].any()]
         if bad:
             markers = ", ".join(dict.fromkeys(one.marker for one in bad))
+            spans = sorted({(one.first, one.last) for one in bad})
             raise InputError(
                 f"{recording.source}, {markers}",
                 NO_VALUE,
-                f"not where markers of the {name} can be in {shown(recording, [(x.first, x.last) for x in bad])}; what "
+                f"not where markers of the {name} can be in {shown(recording, spans)}; what "
                 "is left does not show the segment there. Are they swapped? Cut the trial with --from and --to",
             )
 

@@ -128,7 +128,7 @@ class RecordedLift:
         """
         if self.carried is None and len(self.lifts) > 1:
             raise InputError(
-                self.source, NO_VALUE, f"shows {len(self.lifts)} lifts, {self.lift_times()}: choose one by --lift"
+                self.source, NO_VALUE, f"shows {len(self.lifts)} lifts, {self.lift_times()}: choose one by liftopt mocap --lift"
             )
         start, end = self.carried or (self.time[0], self.time[-1])
         rows = linear(self.time, values.reshape(len(self.time), -1), np.linspace(start, end, samples))
@@ -196,7 +196,7 @@ def recorded_lift(
     scaled = scale_subject(found, mapping)
     person = recorded_person(smooth, found, scaled)
     # What may be refused comes before the motion is followed, which takes longest.
-    held, lost = _object(smooth, mapping, person, needed=load is not None and load.mass > 0.0)
+    held, lost = _object(smooth, mapping, person, outliers, needed=load is not None and load.mass > 0.0)
     force, force_from = _force(smooth.time, mapping, person, held, load or Load())
     agent, limits = person.agent, person.agent.limits
     motion = track(
@@ -281,7 +281,11 @@ def _motion(
 
 
 def _object(
-    recording: Recording, mapping: MarkerMap, person: RecordedPerson, needed: bool
+    recording: Recording,
+    mapping: MarkerMap,
+    person: RecordedPerson,
+    outliers: tuple[Outlier, ...],
+    needed: bool,
 ) -> tuple[ObjectMotion | None, list[str]]:
     """Return the object's motion, or why there is none."""
     labels = mapping.by_segment().get("object", ())
@@ -296,7 +300,8 @@ def _object(
         return held, [f"the object is out of sight in {where}: its place there is that before and after"]
     except InputError as error:
         if needed:
-            raise
+            dropped = outlier_notes(recording, tuple(one for one in outliers if one.marker in labels))
+            raise InputError(error.key, error.value, "; ".join([error.allowed, *dropped])) from None
         return None, [f"the object's motion is left out: {error}"]
 
 

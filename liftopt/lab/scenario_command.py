@@ -19,6 +19,7 @@ def add_scenario_parser(commands: Any, run: Callable[[argparse.Namespace], int])
     )
     parser.add_argument("recorded", metavar="FOLDER", help="that liftopt mocap wrote")
     parser.add_argument("--object-mass", type=float, metavar="KG", required=True, help="of all that is lifted")
+    parser.add_argument("--lift", type=int, metavar="N", help="which lift, from 1, where the recording has several")
     parser.add_argument("--out", metavar="FILE", required=True, help="TOML file to write; it must not exist")
     parser.set_defaults(run=run)
 
@@ -35,6 +36,8 @@ def scenario_text(args: argparse.Namespace) -> str:
     from liftopt.scenario import scenario_to_toml
 
     lift = load_recorded(args.recorded)
+    if args.lift is not None:
+        lift = lift.of_lift(args.lift)
     scenario = recorded_scenario(lift, args.object_mass)
     head = f"# Made from {' '.join(lift.source.split())}; what stands for what: liftopt/lab/recorded_scenario.py.\n"
     write_new("--out", Path(args.out), head + scenario_to_toml(scenario))

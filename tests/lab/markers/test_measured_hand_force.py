@@ -1,0 +1,55 @@
+"""The hand's force from a file: units, overlap and size; the forces are those that were written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from liftopt.errors import InputError
+from liftopt.lab.hand_force import HandForce, read_hand_force
+
+TIME = np.arange(200) / 100.0
+LIFT = 30.0 * np.sin(np.pi * TIME / 2.0)
+
+
+def _read(folder: Path, header: str, time: np.ndarray, force: np.ndarray) -> HandForce:
+    path = folder / "force.csv"
+    rows = [header, *(f"{t:.6f},0,0,{f:.6f}" for t, f in zip(time, force, strict=True))]
+    path.write_text("\n".join(rows) + "\n")
+    return read_hand_force(path, "Z")
+
+
+@pytest.mark.parametrize(
+    ("header", "time", "force"),
+    [
+        ("time,fx,fy,fz", 1.0, 1.0),
+        ("time [s],fx [N],fy [N],fz [N]", 1.0, 1.0),
+        ("Time (ms),Fx (kN),Fy (kN),Fz (kN)", 1000.0, 1e-3),
+    ],
+)
+def test_units_behind_the_names_are_read(tmp_path: Path, header: str, time: float, force: float) -> None:
+    found, outside = _read(tmp_path, header, time * TIME, force * LIFT).at(TIME)
+    np.testing.assert_allclose(found[:, 2], LIFT, atol=1e-3)
+    assert outside == 0
+
+
+def test_counts_are_no_newtons(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"3e\+07 N.*at most 10000 N.*newtons"):
+        _read(tmp_path, "time,fx,fy,fz", TIME, 1e6 * LIFT)
+
+
+def test_milliseconds_taken_for_seconds_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"10 s.*too long to follow a lift.*time \[ms\]"):
+        _read(tmp_path, "time,fx,fy,fz", 1000.0 * TIME, LIFT).at(TIME)
+
+
+def test_a_series_of_another_time_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no force at any time.*100 to 101\.99 s.*0 to 1\.99 s.*--hand-force-start"):
+        _read(tmp_path, "time,fx,fy,fz", 100.0 + TIME, LIFT).at(TIME)
+
+
+def test_a_unit_that_is_none_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"fx \[lbf\].*must be N or kN"):
+        _read(tmp_path, "time,fx [lbf],fy,fz", TIME, LIFT)
