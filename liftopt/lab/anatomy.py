@@ -10,8 +10,8 @@ import numpy.typing as npt
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.marker_map import TRACKED, Labels, MarkerMap
 from liftopt.lab.recording import TO_Z_UP, Recording
-from liftopt.lab.wrist_centre import with_wrist
 from liftopt.lab.rigid import FEWEST, Poses, common_point, fit_poses, mean_shape, were_seen
+from liftopt.lab.wrist_centre import with_wrist
 
 Array = npt.NDArray[np.float64]
 

@@ -16,9 +16,12 @@ from liftopt.lab.sensor_table import SIGNATURE
 from liftopt.lab.text_file import Line, read_lines
 
 COLUMNS = ("time", "fx", "fy", "fz")
-UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | dict.fromkeys(COLUMNS[1:], {"N": 1.0, "kN": 1000.0})
+UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | {
+    name: {"N": 1.0, "kN": 1000.0} for name in COLUMNS[1:]
+}
 NAMED = re.compile(r"([a-z]+)\s*(?:[\[(](.*)[\])])?", re.IGNORECASE)
 LONGEST_STEP = 0.1  # s between samples, over which a hand's force changes much
+MUCH_LONGER = 3.0  # times the recording: with such steps, a series in another unit of time
 CHANGE = 1.0  # N by which the whole series may change and be interpolated over any time
 
 
@@ -51,12 +54,13 @@ class HandForce:
                 f"has no force at any time of the recording: it goes from {spans}; --hand-force-start sets its start",
             )
         step = float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
-        if step > LONGEST_STEP and np.ptp(self.force, axis=0).max() > CHANGE:
+        longer = np.ptp(self.time) > MUCH_LONGER * np.ptp(time)
+        if longer and step > LONGEST_STEP and np.ptp(self.force, axis=0).max() > CHANGE:
             raise InputError(
                 self.source,
                 f"{step:g} s",
-                f"from sample to sample is too long to follow a lift (it goes from {spans}); at most {LONGEST_STEP:g} s."
-                " If the time is in milliseconds, name the column time [ms]",
+                f"from sample to sample is too long to follow a lift (it goes from {spans}); at most "
+                f"{LONGEST_STEP:g} s. If the time is in milliseconds, name the column time [ms]",
             )
         force = np.stack([np.interp(time, self.time, column, left=0.0, right=0.0) for column in self.force.T], axis=1)
         return force, int(outside.sum())

@@ -157,7 +157,8 @@ def _positions(time: Array, position: Array, unseen: npt.NDArray[np.bool_]) -> A
             whole[first : last + 1] = smooth(time[first : last + 1])
         else:
             share = (time[first : last + 1] - time[before[-1]]) / (time[after[0]] - time[before[-1]])
-            whole[first : last + 1] = position[before[-1]] + share[:, None] * (position[after[0]] - position[before[-1]])
+            way = position[after[0]] - position[before[-1]]
+            whole[first : last + 1] = position[before[-1]] + share[:, None] * way
     return whole
 
 

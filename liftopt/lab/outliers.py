@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +28,7 @@ EDGE, LONGEST_EDGE = 0.3, 0.25  # share of the tolerance down to which an outlie
 STEP, JERKED = 0.006, 40.0  # m and m/s^2: a step longer than STEP + JERKED dt^2 against the steps around is a jump
 AROUND = 3  # steps on either side that say how fast the marker goes
 STILL, MOVED = 3, 0.005  # frames with the very same coordinates while the others moved so far [m] are frozen
+PIECE = 0.1  # share of the frames between two jumps whose shape is wrong: then all of them are
 TOO_MANY = 0.4  # share of a marker's frames: with more, nobody knows which of its two places is the right one
 FEWEST_LEFT = 2  # markers that with its neighbour show a segment
 OPTIONAL = ("object", "scapula")  # segments that may be unknown for a while
@@ -108,8 +110,8 @@ def without_outliers(
                     f"{recording.source}, {label}",
                     NO_VALUE,
                     f"is not where a marker of the {group.name} can be in {wrong[:, column].sum()} of "
-                    f"{seen[:, column].sum()} frames ({shown(recording, spans)}): is it swapped with another, or loose? "
-                    f"Cut the trial with --from and --to, or leave the marker out with --ignore {label}",
+                    f"{seen[:, column].sum()} frames ({shown(recording, spans)}): is it swapped with another, or "
+                    f"loose? Cut the trial with --from and --to, or leave the marker out with --ignore {label}",
                 )
             found += [Outlier(label, first, last) for first, last in spans]
         points[:, channels] = np.where(wrong[:, :, None], np.nan, points[:, channels])
@@ -185,6 +187,7 @@ def wrong_points(points: Array, rate: float, change: float = LEAST_CHANGE) -> Fl
         deviation, tolerance = _deviations(np.where(wrong[:, :, None], np.nan, points), change)
         wrong |= _leaving(deviation, tolerance, suspect)
         wrong |= _edges(deviation, tolerance, wrong, rate)
+    wrong |= _whole_pieces(points, wrong, rate)
     work[wrong] = np.nan
     # What jumps without a change of shape: two markers that are alike seen from the others.
     return np.asarray(wrong | _aside(work, rate))
@@ -200,8 +203,8 @@ def _check_whole(recording: Recording, channels: list[int]) -> None:
         raise InputError(
             recording.source,
             NO_VALUE,
-            f"{jumps[frame].sum()} of {both[frame].sum()} markers jump at {recording.time[frame]:.2f} s (frame {frame}): "
-            "frames are missing or repeated there; cut the trial with --from and --to",
+            f"{jumps[frame].sum()} of {both[frame].sum()} markers jump at {recording.time[frame]:.2f} s "
+            f"(frame {frame}): frames are missing or repeated there; cut the trial with --from and --to",
         )
 
 
@@ -238,6 +241,19 @@ def _aside(points: Array, rate: float) -> Flags:
     after = jumps.cumsum(axis=0) % 2 == 1
     less = (after & seen).sum(axis=0) <= (~after & seen).sum(axis=0)
     return np.asarray(seen & (after == less) & jumps.any(axis=0))
+
+
+def _whole_pieces(points: Array, wrong: Flags, rate: float) -> Flags:
+    """Return (F, M) all frames from jump to jump, or to the end of what was seen, in which some were wrong."""
+    jumps, seen, whole = _jumps(points, rate), were_seen(points), np.zeros_like(wrong)
+    for marker in np.flatnonzero(wrong.any(axis=0) & jumps.any(axis=0)):
+        for start, end in runs(seen[:, marker]):
+            cuts = [start, *(start + np.flatnonzero(jumps[start : end + 1, marker])), end + 1]
+            for first, behind in pairwise(cuts):
+                piece = wrong[first:behind, marker]
+                if len(cuts) > 2 and piece.any() and 2 * (behind - first) < seen[:, marker].sum():
+                    whole[first:behind, marker] |= piece.mean() > PIECE
+    return whole
 
 
 def _deviations(points: Array, change: float) -> tuple[Array, Array]:

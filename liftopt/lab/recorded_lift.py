@@ -18,7 +18,15 @@ from liftopt.lab.gaps import Gap, fill_gaps, runs
 from liftopt.lab.hand_force import HandForce
 from liftopt.lab.marker_map import Labels, MarkerMap, mapped_markers
 from liftopt.lab.object_motion import ObjectMotion, load_force, object_motion
-from liftopt.lab.outliers import Outlier, ShapeGroup, check_enough, outlier_notes, shown, without_far_points, without_outliers
+from liftopt.lab.outliers import (
+    Outlier,
+    ShapeGroup,
+    check_enough,
+    outlier_notes,
+    shown,
+    without_far_points,
+    without_outliers,
+)
 from liftopt.lab.recorded_person import RecordedPerson, recorded_person
 from liftopt.lab.recording import TO_Z_UP, Recording, in_metres
 from liftopt.lab.scaling import scale_subject
@@ -127,9 +135,8 @@ class RecordedLift:
             InputError: there are several lifts, and none was chosen.
         """
         if self.carried is None and len(self.lifts) > 1:
-            raise InputError(
-                self.source, NO_VALUE, f"shows {len(self.lifts)} lifts, {self.lift_times()}: choose one by liftopt mocap --lift"
-            )
+            shows = f"shows {len(self.lifts)} lifts, {self.lift_times()}: choose one by liftopt mocap --lift"
+            raise InputError(self.source, NO_VALUE, shows)
         start, end = self.carried or (self.time[0], self.time[-1])
         rows = linear(self.time, values.reshape(len(self.time), -1), np.linspace(start, end, samples))
         return rows.reshape(samples, *values.shape[1:])
@@ -209,7 +216,8 @@ def recorded_lift(
     )
     q, v, a = _motion(smooth.time, motion.q, smooth.rate, cutoff, limits.q_lower, limits.q_upper)
     trajectory = agent_trajectory(agent, q, v, a, force)
-    notes = [*smooth.notes, *outlier_notes(smooth, outliers), *lost, *findings(unused, recording, found, scaled, motion, trajectory.joint_names)]
+    notes = [*smooth.notes, *outlier_notes(smooth, outliers), *lost]
+    notes += findings(unused, recording, found, scaled, motion, trajectory.joint_names)
     off = np.degrees(-q[:, trajectory.joint_names.index("human_Q7")] - found.elbow_flexion)
     notes.append(
         "elbow flexion of the model is off that between the joint centres of the markers "

@@ -51,9 +51,8 @@ def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recor
     """
     mass = checked_number("--object-mass", object_mass, 0.05, 50.0, "kg")
     if lift.carried is None and len(lift.lifts) > 1:
-        raise InputError(
-            "--lift", NO_VALUE, f"{lift.source} shows {len(lift.lifts)} lifts, {lift.lift_times()}; choose one by its number"
-        )
+        shows = f"{lift.source} shows {len(lift.lifts)} lifts, {lift.lift_times()}; choose one by its number"
+        raise InputError("--lift", NO_VALUE, shows)
     if lift.carried is None or lift.object_position is None or lift.carried[0] >= lift.carried[1]:
         raise InputError(lift.source, NO_VALUE, "shows no object that is carried: start and end are not known")
     hand, held = lift.over_lift(lift.hand_position, 2), lift.over_lift(lift.object_position, 2)

@@ -49,7 +49,7 @@ def test_two_lifts_are_told_apart(truth: Any, twice: RecordedLift, tmp_path: Pat
         recorded_scenario(twice, 6.0)
     with pytest.raises(InputError, match="shows 2 lifts"):
         twice.over_lift(twice.q)
-    with pytest.raises(InputError, match="--lift = 3.*1 to 2"):
+    with pytest.raises(InputError, match=r"--lift = 3.*1 to 2"):
         twice.of_lift(3)
     save_recorded(twice.of_lift(2), tmp_path)
     second = load_recorded(tmp_path)
