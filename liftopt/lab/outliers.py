@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import binary_closing
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.gaps import runs
@@ -25,6 +26,7 @@ ALIKE = 0.01  # m, width of the band in which a distance is most often: its usua
 LEAST_CHANGE = 0.02  # m that two markers of one segment may always come nearer or go apart: skin moves over bone
 SPREAD_FACTOR = 9.0  # medians of the deviation that are still the segment's own softness, 6 standard deviations
 EDGE, LONGEST_EDGE = 0.3, 0.25  # share of the tolerance down to which an outlier's run reaches, and how long [s]
+HOLE = 6  # frames between two outliers of one marker that are taken as outliers too
 STEP, JERKED = 0.006, 40.0  # m and m/s^2: a step longer than STEP + JERKED dt^2 against the steps around is a jump
 AROUND = 3  # steps on either side that say how fast the marker goes
 STILL, MOVED = 3, 0.005  # frames with the very same coordinates while the others moved so far [m] are frozen
@@ -187,6 +189,8 @@ def wrong_points(points: Array, rate: float, change: float = LEAST_CHANGE) -> Fl
         deviation, tolerance = _deviations(np.where(wrong[:, :, None], np.nan, points), change)
         wrong |= _leaving(deviation, tolerance, suspect)
         wrong |= _edges(deviation, tolerance, wrong, rate)
+        # A marker that is off before and after is not right by chance between.
+        wrong |= binary_closing(wrong, np.ones((HOLE + 1, 1), bool))
     wrong |= _whole_pieces(points, wrong, rate)
     work[wrong] = np.nan
     # What jumps without a change of shape: two markers that are alike seen from the others.

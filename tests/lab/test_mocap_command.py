@@ -74,6 +74,19 @@ def test_a_measured_force(files: tuple[Path, Path], tmp_path: Path, capsys: pyte
     assert "which has none for 175 of 200 frames" in capsys.readouterr().out
 
 
+def test_part_of_a_trial(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trc, mapping = files
+    options = ["--map", str(mapping), "--out", str(tmp_path / "out"), "--mass", "65", "--object-mass", "6", "--json"]
+    options += ["--from", "0.2", "--to", "1.8", "--ignore", "ARM1", "--ignore", "MC2:0.6-0.7", "--lift", "1"]
+    assert main(["mocap", str(trc), *options]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["frames"] == 161
+    assert summary["seconds"] == pytest.approx(1.6)
+    assert "ARM1" not in summary["residual_rms"]
+    assert [summary["carried"]] == summary["lifts"]
+    assert [(gap["marker"], gap["first"], gap["last"]) for gap in summary["gaps"]] == [("MC2", 40, 50)]
+
+
 @pytest.mark.parametrize(
     ("options", "match"),
     [
@@ -83,6 +96,10 @@ def test_a_measured_force(files: tuple[Path, Path], tmp_path: Path, capsys: pyte
         (["--mass", "65", "--object-mass", "nan"], "--object-mass = nan"),
         (["--mass", "65", "--hand-share", "2"], "--hand-share = 2.0"),
         (["--mass", "65", "--hand-force", "none.csv"], "none.csv: no such file"),
+        (["--mass", "65", "--ignore", "NOSE"], "--ignore = 'NOSE': no such marker"),
+        (["--mass", "65", "--from", "3"], "--from = '3'"),
+        (["--mass", "65", "--to", "foot strike"], "has no events"),
+        (["--mass", "65", "--lift", "2"], "--lift = 2"),
     ],
 )
 def test_bad_input_is_one_line_and_leaves_nothing(

@@ -228,3 +228,16 @@ def test_a_missing_unit_is_asked_for() -> None:
     points = np.random.default_rng(0).uniform(-1.0, 1.0, (5, 4, 3))
     with pytest.raises(InputError, match=r"^units: trial states no unit of length; the mapping must"):
         in_metres(Recording("trial", 100.0, np.arange(5) / 100.0, tuple("ABCD"), points), None, "Z")
+
+
+def test_events_are_read_with_their_side_by_time(c3d_file: Any, tmp_path: Path) -> None:
+    """A time is minutes and seconds."""
+    c3d_file.parameters["EVENT"] = {
+        "USED": 3,
+        "CONTEXTS": ["Right", "General", "Left"],
+        "LABELS": ["Foot Strike", "Lift", "Foot Off"],
+        "TIMES": [[0.0, 1.0, 0.0], [0.25, 2.5, 0.1]],
+    }
+    events = read_c3d(c3d_file.write(tmp_path / "trial.c3d")).events
+    assert [name for name, _ in events] == ["Left Foot Off", "Right Foot Strike", "General Lift"]
+    np.testing.assert_allclose([at for _, at in events], [0.1, 0.25, 62.5], atol=1e-5)

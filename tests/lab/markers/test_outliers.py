@@ -113,6 +113,18 @@ def test_a_frozen_marker_is_dropped(truth: Any, clean: RecordedLift, label: str)
     assert any(note.startswith(f"{label} leaves") for note in lift.notes)
 
 
+@pytest.mark.parametrize("label", ["B4", "ARM1"])
+def test_a_marker_that_is_all_over_the_place_is_dropped(truth: Any, clean: RecordedLift, label: str) -> None:
+    """By chance it is near its place in some frames."""
+
+    def scatter(points: Array) -> None:
+        points[100:160, truth.recording.index(label)] += np.random.default_rng(0).normal(0.0, 200.0, (60, 3))
+
+    lift = _with(truth, scatter)
+    _peaks_agree(lift, clean)
+    assert any(note.startswith(f"{label} leaves") for note in lift.notes)
+
+
 def test_a_marker_that_is_off_too_often_is_refused(truth: Any) -> None:
     def lose(points: Array) -> None:
         points[40:130, truth.recording.index("ARM1")] += np.array([0.0, 150.0, 80.0])
