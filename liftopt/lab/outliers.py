@@ -29,6 +29,7 @@ EDGE, LONGEST_EDGE = 0.3, 0.25  # share of the tolerance down to which an outlie
 HOLE = 6  # frames between two outliers of one marker that are taken as outliers too
 STEP, JERKED = 0.006, 40.0  # m and m/s^2: a step longer than STEP + JERKED dt^2 against the steps around is a jump
 AROUND = 3  # steps on either side that say how fast the marker goes
+FORGOTTEN, MOST_PIECES = 0.1, 100  # s after which a marker may be anywhere; pieces of a path that are looked back on
 STILL, MOVED = 3, 0.005  # frames with the very same coordinates while the others moved so far [m] are frozen
 PIECE = 0.1  # share of the frames between two jumps whose shape is wrong: then all of them are
 TOO_MANY = 0.4  # share of a marker's frames: with more, nobody knows which of its two places is the right one
@@ -240,23 +241,65 @@ def _jumps(points: Array, rate: float) -> Flags:
 
 
 def _aside(points: Array, rate: float) -> Flags:
-    """Return (F, M) the frames on that side of a marker's jumps on which it is less often."""
+    """Return (F, M) the frames that a marker's path goes without: the longest chain of pieces between its jumps."""
     jumps, seen = _jumps(points, rate), were_seen(points)
-    after = jumps.cumsum(axis=0) % 2 == 1
-    less = (after & seen).sum(axis=0) <= (~after & seen).sum(axis=0)
-    return np.asarray(seen & (after == less) & jumps.any(axis=0))
+    aside = np.zeros_like(seen)
+    for marker in np.flatnonzero(jumps.any(axis=0)):
+        pieces = _pieces(seen[:, marker], jumps[:, marker])
+        aside[:, marker] = seen[:, marker]
+        for first, behind in _longest_chain(points[:, marker], pieces, rate):
+            aside[first:behind, marker] = False
+    return aside
+
+
+def _pieces(seen: Flags, jumps: Flags) -> list[tuple[int, int]]:
+    """Return first frame and the one behind the last of each stretch without gap and jump."""
+    result = []
+    for start, end in runs(seen):
+        cuts = [start, *(start + np.flatnonzero(jumps[start : end + 1])), end + 1]
+        result += [(int(first), int(behind)) for first, behind in pairwise(cuts) if behind > first]
+    return result
+
+
+def _longest_chain(path: Array, pieces: list[tuple[int, int]], rate: float) -> list[tuple[int, int]]:
+    """Return the pieces of a marker's path (F, 3) that follow each other without a jump and hold most frames."""
+    best: list[int] = []
+    before: list[int] = []
+    for k, (first, behind) in enumerate(pieces):
+        joined = [i for i in range(max(0, k - MOST_PIECES), k) if _follows(path, pieces[i], pieces[k], rate)]
+        last = max(joined, key=lambda i: best[i], default=-1)
+        best.append(behind - first + (best[last] if last >= 0 else 0))
+        before.append(last)
+    k, chain = int(np.argmax(best)), []
+    while k >= 0:
+        chain.append(pieces[k])
+        k = before[k]
+    return chain
+
+
+def _follows(path: Array, earlier: tuple[int, int], later: tuple[int, int], rate: float) -> bool:
+    """Return whether a marker may have gone from the end of one piece to the start of the other."""
+    frames = later[0] - earlier[1] + 1
+    if frames == 1:
+        return False  # a jump is between them
+    if frames > FORGOTTEN * rate:
+        return True
+    ends = [path[max(earlier[1] - AROUND - 1, earlier[0]) : earlier[1]], path[later[0] : later[0] + AROUND + 1]]
+    speeds = [np.diff(end[: min(len(end), later[1] - later[0]) if k else None], axis=0) for k, end in enumerate(ends)]
+    known = [speed.mean(axis=0) for speed in speeds if len(speed)]
+    speed = np.mean(known, axis=0) if known else np.zeros(3)
+    off = path[later[0]] - path[earlier[1] - 1] - frames * speed
+    return bool(np.linalg.norm(off) <= STEP + JERKED * (frames / rate) ** 2)
 
 
 def _whole_pieces(points: Array, wrong: Flags, rate: float) -> Flags:
     """Return (F, M) all frames from jump to jump, or to the end of what was seen, in which some were wrong."""
     jumps, seen, whole = _jumps(points, rate), were_seen(points), np.zeros_like(wrong)
     for marker in np.flatnonzero(wrong.any(axis=0) & jumps.any(axis=0)):
-        for start, end in runs(seen[:, marker]):
-            cuts = [start, *(start + np.flatnonzero(jumps[start : end + 1, marker])), end + 1]
-            for first, behind in pairwise(cuts):
-                piece = wrong[first:behind, marker]
-                if len(cuts) > 2 and piece.any() and 2 * (behind - first) < seen[:, marker].sum():
-                    whole[first:behind, marker] |= piece.mean() > PIECE
+        for first, behind in _pieces(seen[:, marker], jumps[:, marker]):
+            ended = jumps[first, marker] or (behind < len(points) and jumps[behind, marker])
+            if ended and 2 * (behind - first) < seen[:, marker].sum():
+                whole[first:behind, marker] |= wrong[first:behind, marker].mean() > PIECE
     return whole
 
 
