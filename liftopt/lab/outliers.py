@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +15,7 @@ from scipy.ndimage import binary_closing
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.gaps import runs
+from liftopt.lab.marker_path import aside_of, jumps_of, pieces_of
 from liftopt.lab.recording import Array, Recording
 from liftopt.lab.rigid import were_seen
 
@@ -25,11 +25,8 @@ FAR = 100.0  # times the usual distance from the middle of all markers: beyond i
 ALIKE = 0.01  # m, width of the band in which a distance is most often: its usual value
 LEAST_CHANGE = 0.02  # m that two markers of one segment may always come nearer or go apart: skin moves over bone
 SPREAD_FACTOR = 9.0  # medians of the deviation that are still the segment's own softness, 6 standard deviations
-EDGE, LONGEST_EDGE = 0.3, 0.25  # share of the tolerance down to which an outlier's run reaches, and how long [s]
+EDGE, LONGEST_EDGE = 0.15, 0.25  # share of the tolerance down to which an outlier's run reaches, and how long [s]
 HOLE = 6  # frames between two outliers of one marker that are taken as outliers too
-STEP, JERKED = 0.006, 40.0  # m and m/s^2: a step longer than STEP + JERKED dt^2 against the steps around is a jump
-AROUND = 3  # steps on either side that say how fast the marker goes
-FORGOTTEN, MOST_PIECES = 0.1, 100  # s after which a marker may be anywhere; pieces of a path that are looked back on
 STILL, MOVED = 3, 0.005  # frames with the very same coordinates while the others moved so far [m] are frozen
 PIECE = 0.1  # share of the frames between two jumps whose shape is wrong: then all of them are
 TOO_MANY = 0.4  # share of a marker's frames: with more, nobody knows which of its two places is the right one
@@ -183,9 +180,9 @@ def wrong_points(points: Array, rate: float, change: float = LEAST_CHANGE) -> Fl
     Of the markers whose distances are off in a frame the one with most of them goes first.
     """
     work = points.copy()
-    wrong = _frozen(work)
+    wrong = _frozen(work, rate)
     work[wrong] = np.nan
-    suspect = _aside(work, rate)
+    suspect = aside_of(work, rate)
     for _ in range(2):  # the usual distances once more, without what was wrong
         deviation, tolerance = _deviations(np.where(wrong[:, :, None], np.nan, points), change)
         wrong |= _leaving(deviation, tolerance, suspect)
@@ -195,11 +192,11 @@ def wrong_points(points: Array, rate: float, change: float = LEAST_CHANGE) -> Fl
     wrong |= _whole_pieces(points, wrong, rate)
     work[wrong] = np.nan
     # What jumps without a change of shape: two markers that are alike seen from the others.
-    return np.asarray(wrong | _aside(work, rate))
+    return np.asarray(wrong | aside_of(work, rate))
 
 
 def _check_whole(recording: Recording, channels: list[int]) -> None:
-    jumps = _jumps(recording.points[:, channels], recording.rate)
+    jumps = jumps_of(recording.points[:, channels], recording.rate)
     seen = were_seen(recording.points[:, channels])
     both = np.concatenate([np.zeros((1, len(channels)), bool), seen[1:] & seen[:-1]])
     together = jumps.sum(axis=1) > np.maximum(TOGETHER * both.sum(axis=1), 3)
@@ -213,13 +210,19 @@ def _check_whole(recording: Recording, channels: list[int]) -> None:
         )
 
 
-def _frozen(points: Array) -> Flags:
-    """Return (F, M) where a marker has the very same coordinates for some frames in which the others move."""
-    frozen = np.zeros(points.shape[:2], bool)
+def _frozen(points: Array, rate: float) -> Flags:
+    """Return (F, M) where a marker has the very same coordinates for some frames in which the others move.
+
+    Where they all are frozen, that they jump afterwards shows it.
+    """
+    frozen, jumps = np.zeros(points.shape[:2], bool), jumps_of(points, rate)
     for marker in range(points.shape[1]):
         same = np.concatenate([[False], (points[1:, marker] == points[:-1, marker]).all(axis=1)])
         for first, last in runs(same):
             if last - first + 2 < STILL:
+                continue
+            if last + 1 < len(points) and jumps[last + 1, marker]:
+                frozen[first : last + 1, marker] = True
                 continue
             others = np.delete(points[first - 1 : last + 1], marker, axis=1)
             with_all = others[:, were_seen(others).all(axis=0)]
@@ -228,75 +231,11 @@ def _frozen(points: Array) -> Flags:
     return frozen
 
 
-def _jumps(points: Array, rate: float) -> Flags:
-    """Return (F, M) True in the frame after a jump."""
-    steps = np.diff(points, axis=0)
-    padded = np.pad(steps, ((AROUND, AROUND), (0, 0), (0, 0)), constant_values=np.nan)
-    around = np.lib.stride_tricks.sliding_window_view(padded, 2 * AROUND + 1, axis=0)
-    usual = np.zeros_like(steps)
-    known = were_seen(steps)
-    usual[known] = np.nanmedian(around[known], axis=-1)
-    far = np.linalg.norm(np.where(known[:, :, None], steps - usual, 0.0), axis=2) > STEP + JERKED / rate**2
-    return np.concatenate([np.zeros((1, points.shape[1]), bool), far])
-
-
-def _aside(points: Array, rate: float) -> Flags:
-    """Return (F, M) the frames that a marker's path goes without: the longest chain of pieces between its jumps."""
-    jumps, seen = _jumps(points, rate), were_seen(points)
-    aside = np.zeros_like(seen)
-    for marker in np.flatnonzero(jumps.any(axis=0)):
-        pieces = _pieces(seen[:, marker], jumps[:, marker])
-        aside[:, marker] = seen[:, marker]
-        for first, behind in _longest_chain(points[:, marker], pieces, rate):
-            aside[first:behind, marker] = False
-    return aside
-
-
-def _pieces(seen: Flags, jumps: Flags) -> list[tuple[int, int]]:
-    """Return first frame and the one behind the last of each stretch without gap and jump."""
-    result = []
-    for start, end in runs(seen):
-        cuts = [start, *(start + np.flatnonzero(jumps[start : end + 1])), end + 1]
-        result += [(int(first), int(behind)) for first, behind in pairwise(cuts) if behind > first]
-    return result
-
-
-def _longest_chain(path: Array, pieces: list[tuple[int, int]], rate: float) -> list[tuple[int, int]]:
-    """Return the pieces of a marker's path (F, 3) that follow each other without a jump and hold most frames."""
-    best: list[int] = []
-    before: list[int] = []
-    for k, (first, behind) in enumerate(pieces):
-        joined = [i for i in range(max(0, k - MOST_PIECES), k) if _follows(path, pieces[i], pieces[k], rate)]
-        last = max(joined, key=lambda i: best[i], default=-1)
-        best.append(behind - first + (best[last] if last >= 0 else 0))
-        before.append(last)
-    k, chain = int(np.argmax(best)), []
-    while k >= 0:
-        chain.append(pieces[k])
-        k = before[k]
-    return chain
-
-
-def _follows(path: Array, earlier: tuple[int, int], later: tuple[int, int], rate: float) -> bool:
-    """Return whether a marker may have gone from the end of one piece to the start of the other."""
-    frames = later[0] - earlier[1] + 1
-    if frames == 1:
-        return False  # a jump is between them
-    if frames > FORGOTTEN * rate:
-        return True
-    ends = [path[max(earlier[1] - AROUND - 1, earlier[0]) : earlier[1]], path[later[0] : later[0] + AROUND + 1]]
-    speeds = [np.diff(end[: min(len(end), later[1] - later[0]) if k else None], axis=0) for k, end in enumerate(ends)]
-    known = [speed.mean(axis=0) for speed in speeds if len(speed)]
-    speed = np.mean(known, axis=0) if known else np.zeros(3)
-    off = path[later[0]] - path[earlier[1] - 1] - frames * speed
-    return bool(np.linalg.norm(off) <= STEP + JERKED * (frames / rate) ** 2)
-
-
 def _whole_pieces(points: Array, wrong: Flags, rate: float) -> Flags:
     """Return (F, M) all frames from jump to jump, or to the end of what was seen, in which some were wrong."""
-    jumps, seen, whole = _jumps(points, rate), were_seen(points), np.zeros_like(wrong)
+    jumps, seen, whole = jumps_of(points, rate), were_seen(points), np.zeros_like(wrong)
     for marker in np.flatnonzero(wrong.any(axis=0) & jumps.any(axis=0)):
-        for first, behind in _pieces(seen[:, marker], jumps[:, marker]):
+        for first, behind in pieces_of(seen[:, marker], jumps[:, marker]):
             ended = jumps[first, marker] or (behind < len(points) and jumps[behind, marker])
             if ended and 2 * (behind - first) < seen[:, marker].sum():
                 whole[first:behind, marker] |= wrong[first:behind, marker].mean() > PIECE

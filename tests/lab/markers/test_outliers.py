@@ -113,6 +113,18 @@ def test_a_frozen_marker_is_dropped(truth: Any, clean: RecordedLift, label: str)
     assert any(note.startswith(f"{label} leaves") for note in lift.notes)
 
 
+@pytest.mark.parametrize(("group", "name"), [(("MC2", "MC5", "HAND1"), "hand"), (("B1", "B2", "B3", "B4"), "object")])
+def test_a_segment_that_is_frozen_while_it_moves_is_refused(truth: Any, group: tuple[str, ...], name: str) -> None:
+    channels = [truth.recording.index(label) for label in group]
+
+    def freeze(points: Array) -> None:
+        points[70:100, channels] = points[70, channels]
+
+    with pytest.raises(InputError, match=rf"{name}.*0\.71 to 0\.99 s") as refused:
+        _with(truth, freeze)
+    assert all(label in str(refused.value) for label in group)
+
+
 @pytest.mark.parametrize("label", ["B4", "ARM1"])
 def test_a_marker_that_is_all_over_the_place_is_dropped(truth: Any, clean: RecordedLift, label: str) -> None:
     """By chance it is near its place in some frames."""
