@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
-from liftopt.collocation.guess import blend
+from liftopt.collocation.guess import blend, naive_start
 from liftopt.collocation.postures import Posture
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario import Scenario
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import agents_of, motions_of, object_of, task_of
 from liftopt.verify import verify
 from liftopt.workshop import Workshop
 
@@ -44,7 +44,7 @@ class Case:
     @staticmethod
     def of(scenario: Scenario, ends: Ends, intervals: int = 20) -> Case:
         """Build the problem; the start joins two postures by the quintic of minimum jerk."""
-        spline = RestToRestSpline(intervals)
+        spline = motions_of(scenario, intervals)
         team = Team.of(agents_of(scenario), object_of(scenario), print)
         problem = Problem(team, task_of(scenario), spline.mesh())
         first, last = (
@@ -52,6 +52,10 @@ class Case:
             for coordinates, force in ((ends.first, ends.first_force), (ends.last, ends.last_force))
         )
         return Case(scenario, spline, problem, blend(problem, first, last))
+
+    def from_zero(self) -> Case:
+        """Return the case with the paper's guess as its start: control points 0, forces 10 N."""
+        return replace(self, start=naive_start(self.problem).x)
 
     def solver(self, name: str) -> Solver:
         """Return a new solver for the problem, set up as ``liftopt solve`` does."""
