@@ -11,7 +11,12 @@ TIMES = 3
 
 
 class Beside:
-    """Times both solvers before and after a rival, so that what else the machine does meets all alike."""
+    """Times both solvers before and after a rival, so that what else the machine does meets all alike.
+
+    Attributes:
+        case: the problem, start and tolerance.
+        results: of each solver.
+    """
 
     def __init__(self, case: Case) -> None:
         self.case = case
@@ -19,11 +24,11 @@ class Beside:
         self._timings: dict[str, list[Timing]] = {name: [] for name in OURS}
         for solver in self._solvers.values():
             case.solve(solver)  # a first call takes longer
-        self._results = {name: self._timed(name) for name in OURS}
+        self.results = {name: self._timed(name) for name in OURS}
 
     def finish(self) -> dict[str, dict[str, Any]]:
         """Return the times [ms], iterations and objective of each; ``objective`` is None where it did not converge."""
-        self._results = {name: self._timed(name) for name in OURS}
+        self.results = {name: self._timed(name) for name in OURS}
         return {name: self._plain(name) for name in OURS}
 
     def _timed(self, name: str) -> Any:
@@ -33,7 +38,7 @@ class Beside:
 
     def _plain(self, name: str) -> dict[str, Any]:
         wall, cpu = (sum((getattr(timing, kind) for timing in self._timings[name]), ()) for kind in ("wall", "cpu"))
-        result = self._results[name]
+        result = self.results[name]
         return {
             **Timing(wall, cpu).plain(),
             "iterations": result.iterations,

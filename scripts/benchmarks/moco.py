@@ -23,17 +23,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pinocchio as pin
 
 from benchmarks.beside import Beside, said
 from benchmarks.case import Case
 from benchmarks.goals import Row
-from benchmarks.moco_path import on_our_models
+from benchmarks.moco_path import as_answer, on_our_models
 from liftopt.collocation.motion import Motion, motion_at, objective_weights
 from liftopt.multibody.agent import Agent
 from liftopt.scenario import with_overrides
 from liftopt.trajectory import AgentTrajectory
 
+Array = npt.NDArray[np.float64]
 TOLERANCE, FINE = 1e-3, 1e-6
 AXES = {"RX": [1.0, 0.0, 0.0], "RY": [0.0, 1.0, 0.0], "RZ": [0.0, 0.0, 1.0]}
 # The object's coordinates but its roll, which two point grasps cannot turn and which is locked.
@@ -58,16 +60,23 @@ def _beside_ours(case: Case, tolerance: float, seconds: float, guess: str = "our
     if "seconds" not in found:
         return Row(None, f"{how}{found['status']}. Ours: {said(ours)}", {}, {"beside": ours})
     there = on_our_models(case, found)
+    by_simpson = [f"{name} {_by_simpson(case, result.x):.1f}" for name, result in beside.results.items()]
     note = (
         f"{how}{found['status']}, {found['iterations']} iterations, {found['threads']} threads, processor "
         f"{1e-3 * found['cpu_ms']:.1f} s, J {found['objective']:.1f} (by our models {there.objective:.1f}, gap of the "
         f"grasps {there.closure:.1g} m, torques {there.torque:.1g} Nm and balance {there.balance:.1g} N off, limits "
-        f"exceeded by {there.excess:.1g}). Ours, one thread: {said(ours)}"
+        f"exceeded by {there.excess:.1g}). Ours, one thread: {said(ours)}; J at Moco's points by its rule: "
+        f"{', '.join(by_simpson)}"
     )
     details = {key: found[key] for key in ("seconds", "cpu_ms", "threads", "status", "terms")}
     details |= {"on_our_models": asdict(there), "beside": ours}
     counted = {key: found[key] for key in ("iterations", "objective")}
     return Row(1e3 * found["seconds"] if found["success"] else None, note, counted if found["success"] else {}, details)
+
+
+def _by_simpson(case: Case, x: Array) -> float:
+    """Return the objective of ours where Moco has its points and by its rule: on one mesh the trapezoid's is higher."""
+    return on_our_models(case, as_answer(describe(replace(case, start=x)))).objective
 
 
 def _run(lift: dict[str, Any], seconds: float) -> dict[str, Any]:

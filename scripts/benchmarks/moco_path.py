@@ -79,6 +79,17 @@ def on_our_models(case: Case, found: dict[str, Any]) -> OnOurModels:
     )
 
 
+def as_answer(lift: dict[str, Any]) -> dict[str, Any]:
+    """Return the motion of a described lift as Moco's answer would have it."""
+    named = {joint["name"]: joint for agent in lift["agents"] for joint in agent["joints"]}
+    torques = {name: joint["tau"] for name, joint in named.items()}
+    held = lift["object"]
+    named |= {f"{held['name']}_{coordinate['name']}": coordinate for coordinate in held["coordinates"]}
+    answer: dict[str, Any] = {kind: {name: state[kind] for name, state in named.items()} for kind in RATES}
+    time = np.linspace(0.0, lift["duration"], 2 * lift["intervals"] + 1).tolist()
+    return answer | {"torques": torques, "time": time}
+
+
 def _excesses(case: Case, moved: list[AgentTrajectory]) -> Iterator[Array]:
     for model, agent in zip(case.problem.team.agents, moved, strict=True):
         tau, limits = agent.tau[:, agent.moving], agent.limits
