@@ -56,7 +56,8 @@ def _beside_ours(case: Case, tolerance: float, seconds: float, guess: str = "our
     beside = Beside(case)
     found = _run(describe(case) | {"tolerance": tolerance, "guess": guess}, seconds)
     ours = beside.finish()
-    how = f"N = {case.spline.intervals}, tolerance {tolerance:g}: "
+    how = f"N = {case.spline.intervals}, tolerance {tolerance:g}"
+    how += ": " if guess == "ours" else ", from the middle of its bounds, ours from control points 0: "
     if "seconds" not in found:
         return Row(None, f"{how}{found['status']}. Ours: {said(ours)}", {}, {"beside": ours})
     there = on_our_models(case, found)
