@@ -92,17 +92,22 @@ def test_meshes_are_timed_by_themselves_and_from_one_to_the_next() -> None:
 
 def test_a_rival_is_compared_with_ours_on_its_own_problem_and_not_where_it_did_not_converge() -> None:
     goals, report = _module("goals"), _module("report")
-    ours = {"banded": {"median_ms": 20.0, "objective": 1.0}, "ipopt": {"median_ms": 5.0, "objective": None}}
+    ours = {
+        "banded": {"median_ms": 20.0, "cpu_median_ms": 10.0, "objective": 1.0},
+        "ipopt": {"median_ms": 5.0, "cpu_median_ms": 5.0, "objective": None},
+    }
     beside = {"beside": ours}
     rows = {
         "banded": goals.Row(10.0),
         "ipopt": goals.Row(100.0),
         "virtual_machine": goals.Row(300.0),
         "moco": goals.Row(4000.0, details=beside),
+        "snopt": goals.Row(4000.0, details=beside | {"cpu_median_ms": 3000.0}),
         "moco_fine": goals.Row(None, "not converged after 600 s", details=beside),
     }
     ratios = report.record(rows, {}, "")["ratios"]
     assert ratios["moco"] == {"banded": 200.0}
+    assert ratios["snopt"] == {"banded": 300.0}
     assert "moco_fine" not in ratios
     assert ratios["virtual_machine"] == {"ipopt": 3.0, "banded": 30.0}
 

@@ -68,7 +68,8 @@ def show(run: dict[str, Any], console: Console) -> None:
         goals.add_row(goal.title, _figure(row["value"], goal.unit), _figure(row["details"].get(PROCESSOR), "ms"),
                       _figure(goal.goal, goal.unit),
                       _figure(goal.beyond, goal.unit), mark, row["note"])  # fmt: skip
-    console.print(goals)
+    if goals.row_count:
+        console.print(goals)
     if rivals := [key for key in RIVALS if key in run["rows"]]:
         table = Table("", "measured", "by IPOPT here", "by banded here", "note", title="Others, in the same run")
         for key in rivals:
@@ -123,9 +124,13 @@ def _ratios(rows: dict[str, Row]) -> dict[str, dict[str, float]]:
     for key, row in rows.items():
         beside: dict[str, dict[str, Any]] = row.details.get("beside", {})
         for name, own in beside.items():
-            # By wall time: a rival may use all cores. Without an optimum on both sides there is nothing to compare.
+            # Without an optimum on both sides there is nothing to compare. One that uses all cores has no ratio by
+            # processor time.
             if row.value is not None and own["objective"] is not None:
-                found.setdefault(key, {})[name] = row.value / own["median_ms"]
+                ratio = row.value / own["median_ms"]
+                if PROCESSOR in row.details:
+                    ratio = row.details[PROCESSOR] / own[PROCESSOR]
+                found.setdefault(key, {})[name] = ratio
         for ours in () if "beside" in row.details else ("ipopt", "banded"):
             reference = rows.get(ours, Row(None))
             if row.value is not None and reference.value is not None and key != ours and units[key] == "ms":
