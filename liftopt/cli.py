@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import liftopt
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
@@ -35,6 +35,9 @@ from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
 from liftopt.scenario_schema import describe
 from liftopt.sensitivity_command import add_sensitivity_parser, sensitivity
 from liftopt.viz import FORMATS
+
+if TYPE_CHECKING:
+    from liftopt.solution import Solution
 
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
 
@@ -98,6 +101,9 @@ def _parser() -> argparse.ArgumentParser:
         help="change one entry of the scenario, for example table.mass=3; may be repeated",
     )
     solve.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    solve.add_argument(
+        "--details", action="store_true", help="print all findings, and tables of joints, forces, starts and checks too"
+    )
     solve.add_argument(
         "--refine",
         action="append_const",
@@ -186,16 +192,33 @@ def _solve(args: argparse.Namespace) -> int:
     with _output_folder(out), _progress() as progress:
         with _no_collection():
             from liftopt.lift import lift
-            from liftopt.summary import summary_dict
+            from liftopt.result_writer import save
 
-        solution = lift(scenario, out=out, progress=progress)
-
-    summary = summary_dict(solution, out)
-    _write(json.dumps(summary, allow_nan=False) + "\n" if args.json else _as_text(summary))
-    if summary["solved"]:
+        solution = lift(scenario, progress=progress)
+        progress("writing the result")
+        folder = save(solution, out)
+    _write(_told(solution, folder, args))
+    if solution.solved:
         return SOLVED
-    _complain(f"no verified solution: {summary['reason']}; the best iterate is in {out}, marked as such")
+    from liftopt.assessment.failure_text import failure_text
+
+    _say_on_stderr(f"liftopt: error: {failure_text(solution, out, folder)}")
     return NOT_SOLVED
+
+
+def _told(solution: Solution, folder: Path, args: argparse.Namespace) -> str:
+    """Return what a solve prints: one object, or the verdicts and, where they are asked for, the details."""
+    from liftopt.summary import summary_dict
+
+    if args.json:
+        return json.dumps(summary_dict(solution, folder), allow_nan=False) + "\n"
+    from liftopt.assessment.text import details_text, verdict_text
+
+    text = verdict_text(solution, folder) if solution.solved else ""
+    if args.details:
+        # An iterate has no peaks and no shares worth a table: only how the solver fared.
+        text += "\n" * bool(text) + details_text(solution.assessment) + _as_text(summary_dict(solution, folder))
+    return text
 
 
 def _report(args: argparse.Namespace) -> int:
@@ -314,11 +337,11 @@ def _progress() -> Iterator[Callable[[str], None]]:
 def _as_text(summary: dict[str, Any]) -> str:
     from rich.console import Console
 
-    from liftopt.summary_text import print_summary
+    from liftopt.summary_text import print_details
 
     console = Console()
     with console.capture() as capture:
-        print_summary(summary, console)
+        print_details(summary, console)
     return "\n".join(line.rstrip() for line in capture.get().split("\n"))
 
 
@@ -365,7 +388,13 @@ def _no_collection() -> Iterator[None]:
 
 
 def _complain(message: str) -> None:
-    print("liftopt: error:", " ".join(message.split()), file=sys.stderr)
+    _say_on_stderr(f"liftopt: error: {' '.join(message.split())}\n")
+
+
+def _say_on_stderr(text: str) -> None:
+    encoding = sys.stderr.encoding or "utf-8"
+    sys.stderr.write(text.encode(encoding, "replace").decode(encoding))
+    sys.stderr.flush()
 
 
 def _write(text: str) -> None:

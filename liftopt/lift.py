@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from liftopt import result_writer
 from liftopt.accuracy import Accuracy
+from liftopt.assessment.assess import assessed
 from liftopt.collocation.guess import Start, blend, naive_start, repertoire
 from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, Solver, SolverResult
@@ -65,7 +66,7 @@ def lift(
             progress(line)
 
     search = Search(scenario, workshop or Workshop(), motions_of(scenario), say)
-    solution = search.explained(search.sharpened(search.best()))
+    solution = assessed(search.explained(search.sharpened(search.best())))
     if out is not None:
         say("writing the result")
         result_writer.save(solution, out)
