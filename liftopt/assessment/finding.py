@@ -132,4 +132,6 @@ def graver(one: str, other: str) -> str:
 
 def _order(finding: Finding) -> tuple[bool, int, int]:
     subject = SUBJECTS.index(finding.subject) if finding.subject in SUBJECTS else len(SUBJECTS)
+    if finding.severity == ERROR and finding.subject == MATHEMATICS:  # what the others follow from
+        subject = -1
     return not finding.code.startswith(f"{VERDICT}."), finding.rank, subject

@@ -80,8 +80,8 @@ def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[F
             f"{words.subject}.{words.torque}",
             severity,
             f"{joint} at {100 * peak:.0f} % of its {words.limit}",
-            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {100 * peak:.0f} % of its {words.limit} "
-            f"of {limit:.3g} Nm{beyond}{long}.",
+            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {100 * peak:.0f} % of "
+            f"its {words.limit} of {limit:.3g} Nm{beyond}{long}.",
             agent.name, name, float(fine.time[k]), abs(float(tau[k, row])), float(limit), "Nm",
             words.torque_sources.get((_short(agent, name), sign), words.source),
         )  # fmt: skip
@@ -102,8 +102,8 @@ def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
             f"{words.subject}.speed",
             severity,
             f"{joint} at {100 * peak:.0f} % of its speed limit",
-            f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {100 * peak:.0f} % of its speed "
-            f"limit{_along(part)}.",
+            f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {100 * peak:.0f} "
+            f"% of its speed limit{_along(part)}.",
             agent.name, name, float(fine.time[k]), peak * float(agent.limits.velocity[row]),
             float(agent.limits.velocity[row]), "rad/s", words.source,
         )  # fmt: skip

@@ -29,6 +29,13 @@ if TYPE_CHECKING:
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
+HEADLINES = {
+    "person.strength": "of the person's strength",
+    "person.load_share": "of the load is on the person at most",
+    "person.grasp_force": "on the person's hand at most",
+    "robot.torque": "of a robot joint's torque limit",
+    "person.posture": "RULA posture score at worst; 7 is bad",
+}
 
 
 def write_report(solution: Solution, file: Path, experiment: Experiment | None = None) -> None:
@@ -85,26 +92,21 @@ def report_html(solution: Solution, experiment: Experiment | None = None) -> str
 
 
 def _headlines(solution: Solution) -> list[Headline]:
-    """Return the numbers that matter most, as the assessment has them; there are none of what is no solution."""
-    found = {finding.code: finding for finding in reversed(solution.assessment)}
-    if not solution.solved:
-        return []
-    strength, torque, force = (found[code] for code in ("person.strength", "robot.torque", "person.grasp_force"))
-    share, posture = found["person.load_share"], found["person.posture"]
-    return [
-        Headline(_percent(strength), "of the person's strength", strength.message),
-        Headline(_percent(share), "of the load is on the person at most", share.message),
-        Headline(f"{force.value:.0f} N", "on the person's hand at most", force.message),
-        Headline(_percent(torque), "of a robot joint's torque limit", torque.message),
-        Headline(f"{posture.value:.0f} of 7", "RULA posture score at worst", "1 is good, 7 is bad"),
-    ]
+    """Return the numbers that matter most, as the assessment has them; of what is no solution it has none."""
+    told = []
+    for code, label in HEADLINES.items():
+        finding = next((finding for finding in solution.assessment if finding.code == code), None)
+        if finding is not None and finding.value is not None:
+            told.append(Headline(_number(finding), label, finding.message))
+    return told
 
 
-def _percent(finding: Finding) -> str:
-    """Return a value as a share of its limit; one without a limit is a share already."""
-    if finding.value is None:
-        return "\N{EM DASH}"
-    return f"{100 * finding.value / (finding.limit or 1.0):.0f} %"
+def _number(finding: Finding) -> str:
+    """Return a value as a share of its limit; what has none is a share already, or a score."""
+    value = finding.value or 0.0
+    if finding.unit in ("N", "of 7"):
+        return f"{value:.0f} {finding.unit}"
+    return f"{100 * value / (finding.limit or 1.0):.0f} %"
 
 
 def _environment() -> Environment:
