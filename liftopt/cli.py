@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import liftopt
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
@@ -35,9 +35,6 @@ from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
 from liftopt.scenario_schema import describe
 from liftopt.sensitivity_command import add_sensitivity_parser, sensitivity
 from liftopt.viz import FORMATS
-
-if TYPE_CHECKING:
-    from liftopt.solution import Solution
 
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
 
@@ -197,28 +194,15 @@ def _solve(args: argparse.Namespace) -> int:
         solution = lift(scenario, progress=progress)
         progress("writing the result")
         folder = save(solution, out)
-    _write(_told(solution, folder, args))
+    from liftopt.commands.solved_text import solved_text
+
+    _write(solved_text(solution, folder, as_json=args.json, details=args.details))
     if solution.solved:
         return SOLVED
     from liftopt.assessment.failure_text import failure_text
 
     _say_on_stderr(f"liftopt: error: {failure_text(solution, out, folder)}")
     return NOT_SOLVED
-
-
-def _told(solution: Solution, folder: Path, args: argparse.Namespace) -> str:
-    """Return what a solve prints: one object, or the verdicts and, where they are asked for, the details."""
-    from liftopt.summary import summary_dict
-
-    if args.json:
-        return json.dumps(summary_dict(solution, folder), allow_nan=False) + "\n"
-    from liftopt.assessment.text import details_text, verdict_text
-
-    text = verdict_text(solution, folder) if solution.solved else ""
-    if args.details:
-        # An iterate has no peaks and no shares worth a table: only how the solver fared.
-        text += "\n" * bool(text) + details_text(solution.assessment) + _as_text(summary_dict(solution, folder))
-    return text
 
 
 def _report(args: argparse.Namespace) -> int:
@@ -332,17 +316,6 @@ def _progress() -> Iterator[Callable[[str], None]]:
 
         with Console(stderr=True).status("loading the solver") as line:
             yield show
-
-
-def _as_text(summary: dict[str, Any]) -> str:
-    from rich.console import Console
-
-    from liftopt.summary_text import print_details
-
-    console = Console()
-    with console.capture() as capture:
-        print_details(summary, console)
-    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
 
 
 def _view(args: argparse.Namespace) -> int:
