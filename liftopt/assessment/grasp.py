@@ -58,19 +58,26 @@ def squeeze_finding(fine: Solution) -> Finding:
 
 
 def share_finding(fine: Solution) -> Finding:
-    """Return which part of the load the person carries."""
+    """Return which part of the load the person carries; that one presses down what the other lifts is a caution.
+
+    From the object's weight on it is a warning, as a squeeze is.
+    """
     person, share = fine.agents[0], shares(fine.agents)[0]
     source = "vertical grasp force over that of both"
     if not np.isfinite(share).any():
         text = "There is no load to share."
         return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
     k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
+    up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
+    down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.table.mass * GRAVITY
+    name, against = fine.held.name, down > AT_LIMIT * weight
+    pressed = f"; one of them presses the {name} down with up to {down:.0f} N while the other lifts" if against else ""
     title = f"carries {low:.0f} to {100 * share[k]:.0f} % of the load, {100 * np.nanmean(share):.0f} % on average"
     return Finding(
         f"{PERSON}.load_share",
-        INFO,
+        WARNING if down > weight else CAUTION if against else INFO,
         title,
-        f"The person {title}; most at {fine.time[k]:.2f} s.",
+        f"The person {title}; most at {fine.time[k]:.2f} s{pressed}.",
         person.name,
         value=float(share[k]),
         unit="share of the vertical force",

@@ -69,7 +69,7 @@ def _guide(fine: Solution, measure: Measure) -> Finding:
     if measure.value is not None and measure.limit is None:
         severity, title = WARNING, f"{name}: no limit known to be safe for where the hand is"
     elif measure.value is not None and measure.limit is not None:
-        used = measure.value / measure.limit
+        used = max(0.0, measure.value / measure.limit)  # a hand that only pulls down lifts nothing
         severity = WARNING if used > 1.0 else CAUTION if used >= NEAR_LIMIT else INFO
         title = f"{100 * used:.0f} % of the {name} ({measure.value:.1f} of {measure.limit:.1f} kg)"
     return Finding(

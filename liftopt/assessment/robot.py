@@ -30,13 +30,14 @@ def robot_findings(fine: Solution) -> Iterator[Finding]:
 
 
 def _payload(fine: Solution, payload: float, source: Source) -> Finding:
-    """Return what the flange carries, gripper and the robot's part of the load, beside what it may carry."""
+    """Return what the flange bears, gripper and the robot's part of the load, beside what it may carry."""
     robot, tool = fine.agents[1], fine.scenario.robot.tool.mass
-    carried = tool + robot.grasp_force[:, 2] / GRAVITY
+    # An arm that presses down with more than its gripper weighs is loaded as well.
+    carried = np.abs(tool + robot.grasp_force[:, 2] / GRAVITY)
     k = int(np.argmax(carried))
     used = float(carried[k]) / payload
     text = (
-        f"The robot carries {carried[k]:.2f} kg at {fine.time[k]:.2f} s ({tool:g} kg of it the gripper; vertical grasp "
+        f"The robot bears {carried[k]:.2f} kg at {fine.time[k]:.2f} s ({tool:g} kg of it the gripper; vertical grasp "
         f"force / g), {100 * used:.0f} % of its payload of {payload:g} kg"
     )
     return Finding(

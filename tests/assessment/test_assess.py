@@ -161,6 +161,21 @@ def _pressed(light: Solution, push: float) -> Solution:
 
 
 @pytest.mark.usefixtures("as_given")
+@pytest.mark.parametrize(("down", "severity"), [(-5.0, "info"), (5.0, "caution"), (21.0, "warning")])
+def test_one_who_presses_down_what_the_other_lifts_is_told(light: Solution, down: float, severity: str) -> None:
+    """Of a table of 19.62 N one carries all and ``down`` on top, which the other presses down."""
+    upward = np.array([0.0, 0.0, 1.0])
+    agents = tuple(
+        replace(agent, grasp_force=np.tile(force * upward, (len(light.time), 1)))
+        for agent, force in zip(light.agents, (2.0 * GRAVITY + down, -down), strict=True)
+    )
+    (finding,) = _of(assess(replace(light, agents=agents)), "person.load_share")
+    assert finding.severity == severity
+    assert finding.value == pytest.approx(1.0 + down / (2.0 * GRAVITY), rel=1e-12)
+    assert (f"with up to {down:.0f} N" in finding.message) == (severity != "info")
+
+
+@pytest.mark.usefixtures("as_given")
 def test_grasp_force_at_its_cap_is_a_caution_and_beyond_it_a_warning(light: Solution) -> None:
     for agent, code in zip(light.agents, ("person.grasp_force", "robot.grasp_force"), strict=True):
         largest = float(np.linalg.norm(agent.grasp_force, axis=1).max())
