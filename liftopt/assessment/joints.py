@@ -125,9 +125,10 @@ def _angles(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
                 f"{words.subject}.range",
                 severity,
                 f"{joint} {where} the end of its range",
-                f"{_first(joint, words)} comes to {round(q[k, row], 1) + 0.0:.1f} deg, {where} the end of its range{_along(part)}.",
+                f"{_first(joint, words)} comes to {round(q[k, row], 1) + 0.0:.1f} deg, {where} the end of its "
+                f"range{_along(part)}.",
                 agent.name, name, float(fine.time[k]), float(np.radians(q[k, row])), float(np.radians(limit)), "rad",
-            words.range_sources.get((_short(agent, name), sign), words.source),
+                words.range_sources.get((_short(agent, name), sign), words.source),
             )  # fmt: skip
 
 
