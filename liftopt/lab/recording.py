@@ -222,7 +222,7 @@ def _scale(recording: Recording, units: str | None, notes: list[str]) -> float:
         allowed = '"m", "cm" or "mm"'
         raise InputError("units", NO_VALUE, f"{recording.source} states no unit of length; the mapping must: {allowed}")
     if of_file is None:
-        allowed = f"{', '.join(METRES)} are; the mapping may state the right one (units = \"mm\") and wins"
+        allowed = f'{", ".join(METRES)} are; the mapping may state the right one (units = "mm") and wins'
         raise InputError(recording.source, stated, f"is a unit of length that is not known; {allowed}")
     return of_file
 
@@ -238,7 +238,7 @@ def _check_size(recording: Recording, scale: float, units: str | None) -> None:
         fitting = [name for name in ("m", "cm", "mm") if SMALLEST_CLOUD <= typical * METRES[name] <= LARGEST_CLOUD]
         remedy = ""
         if fitting:
-            remedy = f"; the mapping's units = \"{fitting[0]}\" would make it {typical * METRES[fitting[0]]:.2f} m"
+            remedy = f'; the mapping\'s units = "{fitting[0]}" would make it {typical * METRES[fitting[0]]:.2f} m'
         raise InputError(
             key,
             value,
