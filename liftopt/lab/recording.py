@@ -228,11 +228,11 @@ def _scale(recording: Recording, units: str | None, notes: list[str]) -> float:
 
 
 def _check_size(recording: Recording, scale: float, units: str | None) -> None:
-    with np.errstate(invalid="ignore"):
-        seen = recording.points[~np.isnan(recording.points).all(axis=(1, 2))]
-        seen = seen[:: max(len(seen) // 200, 1)]
-        distances = np.linalg.norm(seen - np.nanmedian(seen, axis=1, keepdims=True), axis=2)
-    typical = float(np.nanmedian(distances))
+    seen = recording.points[~np.isnan(recording.points).all(axis=(1, 2))]
+    if not len(seen):
+        return  # whatever needs a marker names it
+    seen = seen[:: max(len(seen) // 200, 1)]
+    typical = float(np.nanmedian(np.linalg.norm(seen - np.nanmedian(seen, axis=1, keepdims=True), axis=2)))
     key, value = ("units", units) if units else (recording.source, recording.units)
     if not SMALLEST_CLOUD <= typical * scale <= LARGEST_CLOUD:
         fitting = [name for name in ("m", "cm", "mm") if SMALLEST_CLOUD <= typical * METRES[name] <= LARGEST_CLOUD]
