@@ -52,7 +52,7 @@ def lift(
 
     Args:
         scenario: what to lift.
-        out: folder to write the result to, or None.
+        out: folder to write the result to, or None; see ``result_writer.save`` for where an iterate goes.
         progress: hears one line at a time of what is going on.
         workshop: keeps what the next lift can use again; None keeps nothing.
 
