@@ -67,12 +67,12 @@ def _accuracy(solution: Solution) -> Iterator[Finding]:
         yield Finding(code, CAUTION, "the objective's error is not known", text)
         return
     error, bar = float(accuracy.objective_error), float(accuracy.objective_bar)
-    bounds = f" give or take {bar:.2g}" if isfinite(bar) else ""
+    bounds = f" +- {bar:.2g}" if isfinite(bar) else ""
     yield Finding(
         code,
         CAUTION if error > LARGE_ERROR else INFO,
-        f"objective {solution.objective:.4g}, {100 * error:.1f} % above its limit of {accuracy.objective_limit:.4g} on "
-        "ever finer meshes",
+        f"objective {solution.objective:.4g}, {100 * error:.1f} % above its limit of {accuracy.objective_limit:.4g}"
+        f"{bounds} on ever finer meshes",
         f"The objective of {solution.objective:.4g} on {solution.intervals} intervals is {100 * error:.1f} % above "
         f"what ever finer meshes tend to, {accuracy.objective_limit:.4g}{bounds}. The "
         "option --refine solves on finer ones.",
