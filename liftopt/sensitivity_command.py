@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
-from liftopt.result_folder import SCENARIO, locked, standing_result
 from liftopt.scenario import Scenario, load_scenario, scenario_to_dict, with_overrides
 from liftopt.viz import FORMATS
 from liftopt.whole_file import write_whole
@@ -56,7 +55,7 @@ def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = No
     plot = None if args.plot is None else Path(args.plot)
     if plot is not None and plot.suffix[1:] not in FORMATS:
         raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
-    scenario = _scenario(args.scenario, args.overrides)
+    scenario = load_scenario(args.scenario, args.overrides)
     from liftopt.sensitivity import study
 
     plan, workshop = _sharp_plan(scenario, say)
@@ -89,14 +88,6 @@ def study_dict(study: Study) -> dict[str, Any]:
         ],
         "left_out": [{"name": parameter.name, "why": why} for parameter, why in study.left_out],
     }
-
-
-def _scenario(source: str | None, overrides: list[str]) -> Scenario:
-    """Return the scenario of that name or file, or of the result in that folder."""
-    if source is None or not Path(source).is_dir():
-        return load_scenario(source, overrides)
-    with locked(Path(source), to_write=False):
-        return load_scenario(standing_result(Path(source)) / SCENARIO, overrides)
 
 
 def _sharp_plan(scenario: Scenario, say: Callable[[str], None] | None) -> tuple[Plan, Workshop]:
