@@ -1,4 +1,4 @@
-"""Numbers as people write them - with a unit, a decimal comma, in quotes, in centimetres - and how a scenario has them."""
+"""Numbers as people write them: with a unit, a decimal comma, in quotes, in centimetres."""
 
 from __future__ import annotations
 

@@ -84,9 +84,9 @@ class Task:
     """From where to where, how far apart the two stand, and what is zero at both ends."""
 
     standing_distance: Annotated[float, Number("feet to the robot's base", "m", 0.5, 4.0)]
-    rest: Annotated[
-        str, Choice("zero at both ends: velocity, or acceleration as well, as in a file without this key", RESTS)
-    ] = "velocity"
+    rest: Annotated[str, Choice("zero at both ends: velocity, or acceleration too as in files without it", RESTS)] = (
+        "velocity"
+    )
     start: GraspPose
     end: GraspPose
 

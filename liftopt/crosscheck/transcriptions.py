@@ -100,12 +100,13 @@ def mesh_study(
     """
     team = Team.of(agents_of(solution.scenario, solution.urdfs), object_of(solution.scenario, solution.urdfs))
     task, rows = task_of(solution.scenario), []
+    still = solution.scenario.task.rest == "acceleration"
     for intervals in meshes:
         if say:
             say(f"two transcriptions on {intervals} intervals")
         problem, spline, found = spline_optimum(solution, team, intervals)
         motion = motion_at(problem, spline, found.x, np.linspace(0.0, 1.0, 2 * intervals + 1))
-        second = HermiteSimpson(team.agents, team.held, task, intervals)
+        second = HermiteSimpson(team.agents, team.held, task, intervals, still=still)
         optimum = second.solve(points_of(motion, second.at))
         rows.append(_row(found, optimum))
     # From the finest optimum: on the way there both may have found a better basin.
