@@ -286,7 +286,7 @@ def _names_tell_the_lifts_apart(opened: Any, ghost: bool) -> None:
             boxes = _boxes(opened, "#facts", "#views", "#bar", ".name:nth-child(1)", ".name:nth-child(2)")
             heads = _seen(opened, [[0.0, y, 1.75] for y in (0.0, 0.0 if ghost else APART)])
             for i, (box, head) in enumerate(zip(boxes[3:], heads, strict=True)):
-                assert not any(_overlap(box, other) for other in boxes[: 3 + i]), (width, preset)
+                assert not any(_overlap(box, other) for other in boxes[: 3 + i]), (width, preset, boxes)
                 assert 0.0 <= box[0] <= box[2] <= width
                 assert box[0] - 8.0 < head[0] < box[2] + 8.0
                 assert 0.0 < head[1] - box[3] < 100.0

@@ -34,8 +34,8 @@ function make_camera(viewer, data, element) {
     const right = unit(cross([-from[0], -from[1], -from[2]], [0, 0, 1]));
     const up = cross(from, right);
     const height = window.innerHeight, room = 0.04;
-    // Names stand above heads, in one place the one above the other.
-    const names = data.lifts.length < 2 ? 0 : several ? 26 : 50;
+    // Names stand above heads, where these are near each other the one above the other.
+    const names = data.lifts.length < 2 ? 0 : 50;
     const top = Math.min(element("top").getBoundingClientRect().bottom + names, 0.45 * height);
     const bottom = Math.min(height - element("bar").getBoundingClientRect().top, 0.3 * height);
     const tall = Math.tan((camera.fov * Math.PI) / 360), wide = tall * camera.aspect;
@@ -113,7 +113,7 @@ function make_camera(viewer, data, element) {
       box.top = ((1 - at.y) / 2) * window.innerHeight - box.height;
       const covers = (other) => other.left < box.left + box.width + 4 && box.left < other.left + other.width + 4
         && Math.abs(other.top - box.top) < box.height + 2;
-      for (let tries = 0; tries < 9 && placed.some(covers); tries += 1) box.top -= box.height + 3;
+      for (let other; (other = placed.find(covers)); ) box.top = other.top - box.height - 3;
       placed.push(box);
       name.style.visibility = at.z < 1 ? "visible" : "hidden";
       name.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;
