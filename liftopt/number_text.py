@@ -11,6 +11,7 @@ OTHERS = {
     "kg": {"g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237},
     "s": {"ms": 1e-3, "sec": 1.0, "seconds": 1.0, "min": 60.0},
     "deg": {"°": 1.0, "degrees": 1.0, "rad": 57.29577951308232},
+    "": {"%": 1e-2},
 }
 
 
@@ -29,7 +30,7 @@ def number_meant(value: object, unit: str, low: float, high: float) -> str:
     if not isinstance(value, str) or len(value) > 40 or (found := NUMBER.fullmatch(value)) is None:
         return ""
     digits, given = found.groups()
-    scale = 1.0 if given in ("", unit) else OTHERS.get(unit, {}).get(given)
+    scale = 1.0 if given.lower() in ("", unit.lower()) else OTHERS.get(unit, {}).get(given.lower())
     if scale is None:
         return ""
     meant = float(f"{float(digits.replace(',', '.')) * scale:.9g}")

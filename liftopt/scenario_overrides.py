@@ -12,6 +12,7 @@ from liftopt.scenario_schema import Section, describe, entries, shown_key
 from liftopt.suggestions import did_you_mean, nearest_keys
 
 EXAMPLE = "table.mass=3"
+SEVERAL = re.compile(r"^[^\[{\"'\n]*[,;\s]\s*[A-Za-z]\w*\.[\w.]*\w\s*=")  # a second key in what should be one value
 
 
 def set_entry(data: dict[str, Any], override: str) -> None:
@@ -30,6 +31,8 @@ def set_entry(data: dict[str, Any], override: str) -> None:
         found = re.fullmatch(r"([\w.-]+)\s*[:\s]\s*(\S+)", override.strip())
         offer = f"write --set {found[1]}={found[2]}" if found and not equals else f"for example {EXAMPLE}"
         raise InputError("--set", override, f"must be KEY=VALUE with a dotted key; {offer}")
+    if SEVERAL.search(text):
+        raise InputError("--set", override, "holds several entries; give each its own --set")
     for depth, part in enumerate(parts[:-1], start=1):
         inner = data.get(part, {})
         if not isinstance(inner, dict):

@@ -84,6 +84,8 @@ class Number(Kind):
         return float(value)
 
     def meant(self, value: object) -> str:  # noqa: D102
+        if self.word is not None and isinstance(value, str) and value.lower() == self.word:
+            return f"; write {self.word}"
         return number_meant(value, self.unit, self.low, self.high)
 
     def plain(self, value: Any) -> Any:  # noqa: D102
@@ -105,6 +107,12 @@ class Whole(Kind):
         if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
             raise self.refuse(key, value)
         return value
+
+    def meant(self, value: object) -> str:  # noqa: D102
+        if isinstance(value, float) and value.is_integer() and self.low <= value <= self.high:
+            return f"; write {value:.0f}"
+        offer = number_meant(value, "", self.low, self.high) if isinstance(value, str) else ""
+        return "" if "." in offer else offer
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
 
 LIKE = 0.7  # ratio of difflib from which two words are taken for each other
@@ -27,7 +28,7 @@ def nearest(word: str, known: Iterable[str], most: int = 1) -> list[str]:
 
 def nearest_keys(key: str, known: Sequence[str]) -> list[str]:
     """Return the known dotted keys that a key may have meant, best first: misspelt, without or in another section."""
-    *outer, last = _plain(key).split(".")
+    *outer, last = re.split(r"[./:\s]+", _plain(key))
     outer, last = [SECTIONS.get(part, part) for part in outer], ENTRIES.get(last, last)
     wanted = ".".join([*outer, last])
     wanted = WHOLE.get(wanted, wanted)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,6 +18,8 @@ from liftopt.scenario_schema import describe
 from liftopt.suggestions import did_you_mean, nearest, nearest_keys
 
 SET = "--set"
+DASHES = "-\u2013\u2014"  # word processors make dashes of two hyphens
+LIKE_AN_OPTION = re.compile(rf"(--|[{DASHES}](?=\S\S))[^\W\d][\w.-]*")
 
 
 class Parser(argparse.ArgumentParser):
@@ -59,8 +62,9 @@ class Parser(argparse.ArgumentParser):
             name = word.partition("=")[0]
             if word == "--":
                 return
-            if not word.startswith("--") or " " in name or name in self._option_string_actions:
+            if not LIKE_AN_OPTION.fullmatch(name) or name in self._option_string_actions:
                 continue
+            name = "--" + name.lstrip(DASHES)
             if before_command:
                 self.error(f"there is no option {name} here; options stand after the command")
             options = nearest(name, [known for known in self._option_string_actions if known.startswith("--")])
@@ -68,7 +72,7 @@ class Parser(argparse.ArgumentParser):
             if not options and keys and SET in self._option_string_actions:
                 value = word.partition("=")[2] or "VALUE"
                 self.error(f"there is no option {name}{did_you_mean([f'{SET} {key}={value}' for key in keys])}")
-            self.error(f"there is no option {name}{did_you_mean(options)}")
+            self.error(f"there is no option {word.partition('=')[0]}{did_you_mean(options)}")
 
     def _check_command(self, words: Sequence[str], commands: Sequence[str]) -> None:
         if not words:
@@ -80,6 +84,8 @@ class Parser(argparse.ArgumentParser):
             self.error(f"{word!r} is no command; did you mean {self.prog} solve {word}?")
         if holds_result(Path(word)):
             self.error(f"{word!r} is no command; did you mean {self.prog} view {word}?")
+        if word in ("help", "version"):
+            self.error(f"{word!r} is no command; did you mean {self.prog} --{word}?")
         meant = nearest(word, commands)
         self.error(f"{word!r} is no command" + (did_you_mean(meant) or "; there are " + ", ".join(commands)))
 
