@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.checks import FINER
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.errors import InputError
@@ -37,7 +38,6 @@ HALVINGS = 4  # of the change that a reader thinks in
 SAME, SYMMETRIC, NOTHING = 0.10, 0.25, 0.002
 # Another motion: further from the optimum by this [rad, m] than so many times what the tangent says.
 ELSEWHERE, FURTHER = 0.1, 3.0
-FINER = 10  # times between knots, where peaks are looked for too
 
 
 @dataclass(frozen=True)
