@@ -131,7 +131,10 @@ def test_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
 def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The solver gives up at every start but the last, which it is brought by the elastic problem."""
+    """The solver gives up at every start but the last, which it is brought by the elastic problem.
+
+    To which of several optima that leads, and whether that one takes a finer mesh, is for rounding to decide.
+    """
     solve = Banded.solve
     failed: list[SolverResult] = []
 
@@ -144,8 +147,10 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
 
     monkeypatch.setattr(Banded, "solve", fails_first)
     solution = lift(load_scenario("table5", [*BANDED, "solver.tries=0"]))
-    assert solution.solved and solution.kept_start == "elastic"
-    assert [start.status for start in solution.starts] == ["Line_Search_Failed"] * 2 + ["converged"]
+    assert solution.solved and solution.kept_start.startswith("elastic")
+    first, others = solution.starts[:3], solution.starts[3:]
+    assert [start.status for start in first] == ["Line_Search_Failed"] * 2 + ["converged"]
+    assert first[-1].name == "elastic" and all(start.name.startswith("elastic, ") for start in others)
     assert solution.reasons == () == solution.remedies
 
 
