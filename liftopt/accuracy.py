@@ -21,6 +21,8 @@ class Accuracy:
         balance: largest residual of the object's balance there [N, Nm].
         torque_excess: most that a torque exceeds its limit there [Nm].
         objective_limit: the objective extrapolated to ever finer meshes; NaN where it cannot be estimated.
+        objective_bar: by how much the limit may be off, above or below: the last correction, from the objective on
+            the finer of the two meshes that were compared to the limit; NaN likewise.
         objective_error: ``objective / objective_limit - 1``; NaN likewise.
         intervals: of the mesh that was compared for it; 0: none.
         apart: how far the optima on both meshes are apart, root mean square over time, of the joint [rad] or coordinate
@@ -33,6 +35,7 @@ class Accuracy:
     torque_excess: float
     objective_limit: float = np.nan
     objective_error: float = np.nan
+    objective_bar: float = np.nan
     intervals: int = 0
     apart: float = np.nan
     remark: str = NOT_COMPARED

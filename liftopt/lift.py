@@ -24,6 +24,7 @@ from liftopt.reasons import Obstacle
 from liftopt.refinement import FINEST, SURE, finer, sharpened
 from liftopt.remedies import Remedies
 from liftopt.scenario import Scenario
+from liftopt.scene import motions_of
 from liftopt.scouting import scout
 from liftopt.solution import Solution, StartRecord
 from liftopt.verify import CLOSURE_BETWEEN_KNOTS
@@ -63,7 +64,7 @@ def lift(
         if progress:
             progress(line)
 
-    search = Search(scenario, workshop or Workshop(), RestToRestSpline(scenario.solver.intervals), say)
+    search = Search(scenario, workshop or Workshop(), motions_of(scenario), say)
     solution = search.explained(search.sharpened(search.best()))
     if out is not None:
         say("writing the result")
@@ -144,7 +145,7 @@ class Search:
 
     def refine(self, plan: Plan) -> Plan:
         """Return the plan that comes of another one on twice its intervals."""
-        self._on(RestToRestSpline(2 * plan.spline.intervals))
+        self._on(plan.spline.on(2 * plan.spline.intervals))
         start = transfer(plan.problem, plan.spline, plan.result.x, self.problem, self.spline)
         return finer(self, [plan], self.spline.intervals) or self._solved([Start("refined", start)])
 

@@ -19,7 +19,6 @@ from liftopt.collocation.guess import Start, posture_starts
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.screen import too_fast
 from liftopt.collocation.solvers.result import Solver
-from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer
 from liftopt.errors import InputError, SolverError
 from liftopt.plan import Plan
@@ -166,7 +165,7 @@ class Remedies:
     def _holds(self, plan: Plan) -> bool:
         """Whether the plan is verified, on finer meshes if it takes them."""
         while plan.refinable and time.monotonic() < self.deadline and 2 * plan.spline.intervals <= FINEST:
-            finer = RestToRestSpline(2 * plan.spline.intervals)
+            finer = plan.spline.on(2 * plan.spline.intervals)
             problem = self.search.workshop.problem(plan.scenario, finer)
             start = transfer(plan.problem, plan.spline, plan.result.x, problem, finer)
             result = self._solver(problem, plan.scenario).solve(start, deadline=self.deadline, problem=problem)

@@ -17,11 +17,11 @@ import time
 from dataclasses import replace
 
 from liftopt.collocation.kernels import Say
-from liftopt.collocation.spline import RestToRestSpline
 from liftopt.lift import Search
 from liftopt.plan import Plan
 from liftopt.refinement import estimate
 from liftopt.scenario import Scenario
+from liftopt.scene import motions_of
 from liftopt.solution import Solution, StartRecord
 from liftopt.workshop import Workshop
 
@@ -69,7 +69,7 @@ class Replanner:
             solution = plan.solution([record], {"setup": 0.0, "total": now - began})
             late = began + scenario.solver.time_limit
             return replace(solution, accuracy=estimate(self._workshop, plan, late, self._say))
-        search = Search(scenario, self._workshop, RestToRestSpline(scenario.solver.intervals), self._say)
+        search = Search(scenario, self._workshop, motions_of(scenario), self._say)
         best = search.sharpened(search.best())
         if best.solved:
             self.latest = best
@@ -81,15 +81,15 @@ class Replanner:
         Ask ``solved`` of it before it is believed: that verifies. The plan becomes the latest.
 
         Returns:
-            None where there is no plan to start from, where the scenario has another structure (``solver.intervals``, a
-            tool or none) or where the solver did not converge: then ``solve`` searches anew.
+            None where there is no plan to start from, where the scenario has another structure (``solver.intervals``,
+            ``task.rest``, a tool or none) or where the solver did not converge: then ``solve`` searches anew.
 
         Raises:
             InputError: a value of the scenario cannot be used.
             SolverError: the solver cannot run at all.
         """
         last = self.latest
-        if last is None or last.scenario.solver.intervals != scenario.solver.intervals:
+        if last is None or motions_of(last.scenario) != motions_of(scenario):
             return None
         self._say("solving from the last optimum")
         problem = self._workshop.problem(scenario, last.spline, self._say)

@@ -170,5 +170,6 @@ def _attributes(solution: Solution) -> dict[str, Any]:
             "torque_excess_between_knots": accuracy.torque_excess,
             "objective_limit": accuracy.objective_limit,
             "objective_error": accuracy.objective_error,
+            "objective_bar": accuracy.objective_bar,
         }
     return attributes | {f"{name}_seconds": value for name, value in solution.seconds.items()}

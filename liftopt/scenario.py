@@ -25,6 +25,7 @@ else:
 
 SHIPPED = Path(__file__).parent / "scenarios"
 GRASPS = ("point", "wrench")
+RESTS = ("velocity", "acceleration")
 LARGEST_FILE = 100_000  # bytes; a scenario has some 30 lines
 MOST_DOTS = 200  # in a line; the longest key has two
 
@@ -88,9 +89,12 @@ class GraspPose:
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """From where to where, and how far apart the two stand."""
+    """From where to where, how far apart the two stand, and what is zero at both ends."""
 
     standing_distance: Annotated[float, Number("feet to the robot's base", "m", 0.5, 4.0)]
+    rest: Annotated[str, Choice("zero at both ends: velocity, or acceleration too as in files without it", RESTS)] = (
+        "velocity"
+    )
     start: GraspPose
     end: GraspPose
 
@@ -189,7 +193,7 @@ def shipped_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(source: str | Path | None = None, overrides: Iterable[str] = ()) -> Scenario:
-    """Return the scenario of a TOML file.
+    """Return the scenario of a TOML file. One without ``task.rest`` means ``"acceleration"``, as all did before.
 
     Args:
         source: path of the file, or the name of a shipped scenario (a str); None is ``"table5"``.
@@ -203,6 +207,9 @@ def load_scenario(source: str | Path | None = None, overrides: Iterable[str] = (
     data = _parse(path, _read(path))
     with suppress(InputError):  # a file name need not be a name
         data.setdefault("name", Name("file name").accept("name", path.stem))
+    task = data.get("task")
+    if isinstance(task, dict):  # what files meant before there was a choice
+        task.setdefault("rest", "acceleration")
     for override in overrides:
         _set(data, override)
     return scenario_from_dict(data)

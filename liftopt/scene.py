@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.multibody.human import HAND_UNDER_EDGE, Subject, human_agent
@@ -91,6 +92,11 @@ def task_of(scenario: Scenario) -> LiftTask:
         max_grasp_force=limits.max_grasp_force,
         balance_tolerance=limits.balance_tolerance,
     )
+
+
+def motions_of(scenario: Scenario, intervals: int | None = None) -> RestToRestSpline:
+    """Return the motions that a scenario allows: at rest at both ends as it asks, on its intervals or on others."""
+    return RestToRestSpline(scenario.solver.intervals if intervals is None else intervals, scenario.task.rest)
 
 
 def _pose(grasp: GraspPose, table: Table) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

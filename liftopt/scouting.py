@@ -50,7 +50,7 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
     scenario, intervals = search.scenario, meshes_below(search.spline.intervals)[0]
     if intervals < FEWEST or not tries:
         return []
-    spline = RestToRestSpline(intervals)
+    spline = search.spline.on(intervals)
     problem = search.workshop.problem(scenario, spline, search.say)
     starts = found.starts(problem, tries)
     search.say(f"trying {len(starts)} starts on {intervals} intervals")

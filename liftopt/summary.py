@@ -244,6 +244,7 @@ def _accuracy(solution: Solution) -> dict[str, Any] | None:
         "torque_excess_Nm": _number(accuracy.torque_excess),
         "objective_limit": _number(accuracy.objective_limit),
         "objective_error": _number(accuracy.objective_error),
+        "objective_bar": _number(accuracy.objective_bar),
         "compared_intervals": accuracy.intervals or None,
         "remark": accuracy.remark,
     }

@@ -196,8 +196,8 @@ def _accuracy(accuracy: dict[str, Any] | None, intervals: int) -> str:
     else:
         objective = (
             f"objective {_percent(accuracy['objective_error'])}% above its limit of "
-            f"{_general(accuracy['objective_limit'], 4)} on ever finer meshes (from N = "
-            f"{accuracy['compared_intervals']} and {intervals})"
+            f"{_general(accuracy['objective_limit'], 4)} +- {_short(accuracy['objective_bar'])} on ever finer meshes "
+            f"(from N = {accuracy['compared_intervals']} and {intervals})"
         )
     closure, balance = _times(accuracy["closure_m"], 1e3), accuracy["balance_SI"]
     return (

@@ -33,8 +33,8 @@ class Workshop:
         self._models: dict[str, tuple[Hashable, Any]] = {}
         self._team: Team | None = None
         self._postures: PostureSolver | None = None
-        self._meshes: dict[int, Mesh] = {}
-        self._problems: dict[int, tuple[Scenario, Problem]] = {}
+        self._meshes: dict[RestToRestSpline, Mesh] = {}
+        self._problems: dict[RestToRestSpline, tuple[Scenario, Problem]] = {}
         self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, say: Say | None = None) -> Problem:
@@ -50,12 +50,12 @@ class Workshop:
             new is not old for new, old in zip((*agents, held), (*team.agents, team.held), strict=True)
         ):
             team = self._team = Team.of(agents, held, say, like=team)
-        if spline.intervals not in self._meshes:
-            self._meshes[spline.intervals] = spline.mesh()
-        known = self._problems.get(spline.intervals)
+        if spline not in self._meshes:
+            self._meshes[spline] = spline.mesh()
+        known = self._problems.get(spline)
         if known is None or known[0] != scenario or known[1].team is not team:
-            known = scenario, Problem(team, task_of(scenario), self._meshes[spline.intervals])
-            self._problems[spline.intervals] = known
+            known = scenario, Problem(team, task_of(scenario), self._meshes[spline])
+            self._problems[spline] = known
         return known[1]
 
     def solver(

@@ -55,6 +55,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
         "table": {"mass": 2.0, "depth": 0.45, "width": 0.31, "height": 0.02},
         "task": {
             "standing_distance": 1.9,
+            "rest": "velocity",
             "start": {"height": 0.9, "human_distance": 0.40, "pitch_deg": 0.0},
             "end": {"height": 1.4, "human_distance": 0.40, "pitch_deg": 0.0},
         },

@@ -12,18 +12,17 @@ import pytest
 
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.screen import screen, too_fast
-from liftopt.collocation.spline import RestToRestSpline
 from liftopt.multibody.agent import HalfSpace
 from liftopt.reasons import Obstacle
 from liftopt.scenario import load_scenario
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import agents_of, motions_of, object_of, task_of
 
 N = 20
 
 
 def _problem(*overrides: str) -> Problem:
     scenario = load_scenario("table5", overrides)
-    return Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), RestToRestSpline(N).mesh())
+    return Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), motions_of(scenario, N).mesh())
 
 
 def _obstacles(*overrides: str) -> list[Obstacle]:
@@ -124,15 +123,21 @@ def test_a_load_that_some_posture_holds_is_not_called_too_heavy() -> None:
     assert _obstacles("table.mass=20", "limits.max_grasp_force=2000") == []
 
 
-def test_a_lift_too_short_for_the_speed_limit_is_told_the_shortest() -> None:
-    """0.5 m at 2 m/s, of which the two resting ends take one interval each: 0.25 s * 20 / 18."""
-    obstacle = too_fast(_problem("duration=0.25"))
+@pytest.mark.parametrize(("rest", "ramps"), [("velocity", 2 / 3), ("acceleration", 2.0)])
+def test_a_lift_too_short_for_the_speed_limit_is_told_the_shortest(rest: str, ramps: float) -> None:
+    """0.5 m at 2 m/s, and at both ends in all so many intervals at rest: 0.25 s * 20 / (20 - ramps).
+
+    The quadratic from rest to full speed covers two thirds of its interval; with zero acceleration it takes a cubic's two
+    intervals, of which it covers one.
+    """
+    still, shortest = f"task.rest={rest}", 0.25 * N / (N - ramps)
+    obstacle = too_fast(_problem("duration=0.25", still))
     assert obstacle is not None
     assert (obstacle.constraint, obstacle.who, obstacle.unit) == ("velocity", "table", "s")
-    assert obstacle.amount == pytest.approx(0.25 * 20 / 18 - 0.25)
-    assert "the lift must last at least 0.28 s, not 0.25 s" in obstacle.message
-    assert too_fast(_problem("duration=0.278")) is None
-    assert too_fast(_problem("duration=0.277")) is not None
+    assert obstacle.amount == pytest.approx(shortest - 0.25)
+    assert f"the lift must last at least {shortest:.2f} s, not 0.25 s" in obstacle.message
+    assert too_fast(_problem(f"duration={shortest + 1e-4:.6f}", still)) is None
+    assert too_fast(_problem(f"duration={shortest - 1e-4:.6f}", still)) is not None
 
 
 def test_a_passed_deadline_ends_the_search_at_once_and_makes_nothing_up() -> None:

@@ -207,8 +207,7 @@ class SoftProblem(Problem):
             unit = "N" if block.name == "friction" else "Nm"
             who = [f"{block.who} {label}" for label in block.labels]
         elif block.name == "velocity":
-            n = len(self.mesh.slope)
-            phase = (np.arange(n) + 1.0) / (n + 1)
+            phase = self.mesh.slope_phase
             share, amounts = amounts / block.upper.reshape(amounts.shape), amounts / task.duration
             unit = "rad/s"
             if block.who not in names:
@@ -227,6 +226,17 @@ class SoftProblem(Problem):
         ]  # fmt: skip
 
     def _price(self, block: Block) -> Array:
+        """Return the price of each row of a block, by the share of time it stands for: half at both ends.
+
+        Otherwise it would pay to start and end with a jerk: the accelerations of a motion from rest to rest sum to
+        nothing only where those at the ends count half.
+        """
+        if len(block.lower) == len(self.mesh.weights) * len(block.labels):
+            share = np.repeat(self.mesh.weights / self.mesh.weights.max(), len(block.labels))
+            return np.asarray(share * self._unit_price(block))
+        return self._unit_price(block)
+
+    def _unit_price(self, block: Block) -> Array:
         if block.name == "closure":
             return np.full(len(block.lower), CLOSURE_PRICE)
         if block.name == "keep_in":

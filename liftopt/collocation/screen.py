@@ -35,9 +35,10 @@ NOTICEABLE = 0.01
 def too_fast(problem: Problem) -> Obstacle | None:
     """Return how much longer the lift must last for the object's speed limit, or None if it lasts long enough."""
     task = problem.task
-    intervals = len(problem.mesh.phase) - 1
-    # From rest to rest on N intervals the control points move on N - 2 of them.
-    needed = np.abs(task.end - task.start) / task.pose_velocity * intervals / (intervals - 2)
+    # From one control point to the next a coordinate goes as far as the limit of that slope lets it, in all by a share
+    # of the distance at full speed.
+    share = (1.0 / problem.mesh.slope[:, 1:].diagonal()).sum()
+    needed = np.abs(task.end - task.start) / task.pose_velocity / share
     shortest = float(np.nanmax(needed))
     if shortest <= task.duration:
         return None

@@ -1,13 +1,15 @@
 """Uniform clamped cubic B-splines at rest at both ends: basis, mesh, quadrature and the sampling of a trajectory.
 
 The motion of every coordinate is ``q(s) = sum_i B_i(s) c_i`` over the phase ``s = t / T`` in [0, 1] on N equal
-intervals, N + 3 control points. Zero velocity and acceleration at both ends (eq. 19) make the first three control
-points equal, and the last three: N - 1 free ones remain, so the boundary conditions hold by construction.
+intervals, N + 3 control points. Zero velocity at both ends makes the first two control points equal, and the last two;
+zero acceleration as well (eq. 19) makes it three. N + 1 or N - 1 free ones remain, so rest at the ends holds by
+construction. In continuous time zero acceleration asks for nothing, for an acceleration may jump; on a mesh it costs a
+ramp of one interval, and the objective converges at first order instead of second.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +18,8 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 DEGREE = 3
 FEWEST = 6
+# What is zero at both ends, and how many control points are equal there.
+TIED = {"velocity": 2, "acceleration": 3}
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,11 @@ class Mesh:
     closure_knots: npt.NDArray[np.int64]
     slope: Array
 
+    @property
+    def slope_phase(self) -> Array:
+        """Phases (m,) at which each row of ``slope`` acts most: midway between its two control points."""
+        return np.asarray((self.control_phase[1:] + self.control_phase[:-1]) / 2)
+
     @staticmethod
     def at_rest() -> Mesh:
         """Return the mesh of one posture at rest: one knot, one control point, no motion."""
@@ -51,13 +60,26 @@ class RestToRestSpline:
 
     Attributes:
         intervals: N, at least 6 so that the two resting ends do not share control points.
+        rest: what is zero at both ends: ``"velocity"`` alone, or ``"acceleration"`` as well.
     """
 
     intervals: int
+    rest: str = "velocity"
 
     def __post_init__(self) -> None:
         if self.intervals < FEWEST:
             raise ValueError(f"a motion from rest to rest needs at least {FEWEST} intervals, not {self.intervals}")
+        if self.rest not in TIED:
+            raise ValueError(f"at rest is {' or '.join(TIED)}, not {self.rest}")
+
+    def on(self, intervals: int) -> RestToRestSpline:
+        """Return the space of the same kind on another number of intervals."""
+        return replace(self, intervals=intervals)
+
+    @property
+    def order(self) -> int:
+        """Order in the step at which the objective converges: 2, or 1 where zero acceleration takes a ramp."""
+        return 2 if self.rest == "velocity" else 1
 
     @property
     def n_knots(self) -> int:
@@ -66,8 +88,8 @@ class RestToRestSpline:
 
     @property
     def n_free(self) -> int:
-        """Number of free control points a coordinate, N - 1."""
-        return self.intervals - 1
+        """Number of free control points a coordinate: N + 1, or N - 1 with zero acceleration at the ends."""
+        return self.intervals + DEGREE - 2 * self._bound
 
     @property
     def phase(self) -> Array:
@@ -85,21 +107,22 @@ class RestToRestSpline:
     def closure_knots(self) -> npt.NDArray[np.int64]:
         """Knots at which loop closure is collocated: as many as there are free control points.
 
-        The two resting ends leave N - 1 free control points a coordinate, so closure at all N + 1 knots is
-        over-determined; without knots 1 and N - 1 it is square and well conditioned.
+        With zero velocity at the ends these are all. Zero acceleration leaves two control points fewer, and closure at
+        all knots is over-determined; without knots 1 and N - 1 it is square and well conditioned.
         """
-        return np.delete(np.arange(self.n_knots), [1, self.n_knots - 2])
+        knots = np.arange(self.n_knots)
+        return knots if self.n_free == self.n_knots else np.delete(knots, [1, self.n_knots - 2])
 
     @cached_property
     def greville(self) -> Array:
-        """Phases (N - 1,) at which each free control point acts most; the first is 0, the last 1."""
+        """Phases (n_free,) at which each free control point acts most; the first is 0, the last 1."""
         abscissae = np.array([self._knot_vector[i + 1 : i + 1 + DEGREE].mean() for i in range(self.intervals + 3)])
-        phases = abscissae[2:-2].copy()
+        phases = abscissae[self._bound : -self._bound].copy()
         phases[0], phases[-1] = 0.0, 1.0
         return phases
 
     def basis(self, phase: Array, derivative: int = 0) -> Array:
-        """Return the (len(phase), N - 1) values of the free basis functions, or of a derivative by the phase."""
+        """Return the (len(phase), n_free) values of the free basis functions, or of a derivative by the phase."""
         values = _basis(self._knot_vector, DEGREE, derivative, np.asarray(phase, dtype=float)) @ self._tied
         # Exact zeros outside the support keep the sparsity of what is built on it.
         values[np.abs(values) < 1e-13 * max(1.0, float(np.abs(values).max()))] = 0.0
@@ -107,7 +130,7 @@ class RestToRestSpline:
 
     @cached_property
     def slope(self) -> Array:
-        """Return the (N - 2, N - 1) map to the control points of the derivative by the phase.
+        """Return the (n_free - 1, n_free) map to the control points of the derivative by the phase.
 
         The derivative is a quadratic spline inside the hull of these, so bounding them bounds the speed at all times.
         """
@@ -116,7 +139,7 @@ class RestToRestSpline:
         for i in range(n - 1):
             width = self._knot_vector[i + 4] - self._knot_vector[i + 1]
             difference[i, i : i + 2] = np.array([-1.0, 1.0]) * DEGREE / width
-        return (difference @ self._tied)[2:-2]
+        return (difference @ self._tied)[self._bound : -self._bound]
 
     def mesh(self) -> Mesh:
         """Return the collocation mesh of this space."""
@@ -128,12 +151,17 @@ class RestToRestSpline:
         inner = np.linspace(0.0, 1.0, self.n_knots)
         return np.concatenate([np.zeros(DEGREE), inner, np.ones(DEGREE)])
 
+    @property
+    def _bound(self) -> int:
+        """Control points at each end that are the same as their neighbour nearer to the middle."""
+        return TIED[self.rest] - 1
+
     @cached_property
     def _tied(self) -> Array:
-        """(N + 3, N - 1): the first three control points are one, the last three are one."""
+        """(N + 3, n_free): the first control points are one, and the last."""
         n, free = self.intervals + 3, self.n_free
         tied = np.zeros((n, free))
-        tied[np.arange(n), np.clip(np.arange(n) - 2, 0, free - 1)] = 1.0
+        tied[np.arange(n), np.clip(np.arange(n) - self._bound, 0, free - 1)] = 1.0
         return tied
 
 

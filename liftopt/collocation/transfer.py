@@ -82,7 +82,7 @@ def transfer_multipliers(problem: Problem, multipliers: Multipliers, other: Prob
 def _phases(mesh: Mesh, block: Block) -> Array:
     """Return when the rows of a block act."""
     if block.name == "velocity":
-        return np.asarray((mesh.control_phase[1:] + mesh.control_phase[:-1]) / 2)
+        return mesh.slope_phase
     return mesh.phase[mesh.closure_knots] if block.name == "closure" else mesh.phase
 
 

@@ -29,7 +29,7 @@ from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
 from liftopt.interpolation import refined
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import agents_of, motions_of, object_of, task_of
 from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -100,12 +100,13 @@ def mesh_study(
     """
     team = Team.of(agents_of(solution.scenario, solution.urdfs), object_of(solution.scenario, solution.urdfs))
     task, rows = task_of(solution.scenario), []
+    still = solution.scenario.task.rest == "acceleration"
     for intervals in meshes:
         if say:
             say(f"two transcriptions on {intervals} intervals")
         problem, spline, found = spline_optimum(solution, team, intervals)
         motion = motion_at(problem, spline, found.x, np.linspace(0.0, 1.0, 2 * intervals + 1))
-        second = HermiteSimpson(team.agents, team.held, task, intervals)
+        second = HermiteSimpson(team.agents, team.held, task, intervals, still=still)
         optimum = second.solve(points_of(motion, second.at))
         rows.append(_row(found, optimum))
     # From the finest optimum: on the way there both may have found a better basin.
@@ -117,7 +118,7 @@ def mesh_study(
 
 def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Problem, RestToRestSpline, SolverResult]:
     """Return the solve's own optimum on another mesh, started from the solution."""
-    spline = RestToRestSpline(intervals)
+    spline = motions_of(solution.scenario, intervals)
     problem = Problem(team, task_of(solution.scenario), spline.mesh())
     dense = refined(solution, max(4, 4 * intervals // solution.intervals))
     coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.held.pose])

@@ -190,7 +190,7 @@ def _mesh(dense: Solution) -> Iterator[Finding]:
             "note",
             f"The objective is {100 * accuracy.objective_error:.1f} % above that on ever finer meshes",
             f"On {dense.intervals} intervals, estimated from the optimum on {accuracy.intervals}: it tends to "
-            f"{accuracy.objective_limit:.4g}, for the ramps at both ends take one interval each. The option --refine "
+            f"{accuracy.objective_limit:.4g}, give or take {accuracy.objective_bar:.2g}. The option --refine "
             "solves on finer ones.",
         )
 

@@ -82,7 +82,7 @@ def test_three_agents_on_one_object(
     held = make_box(np.vstack([EDGES, [[0.0, 0.15, -0.01]]]))
     team = Team.of((human, sawyer, make_arm(4)), held)
     problem = Problem(team, make_task(3), RestToRestSpline(6).mesh())
-    assert problem.layout.n_x == 5 * (10 + 7 + 4 + 6) + 7 * 9
+    assert problem.layout.n_x == 7 * (10 + 7 + 4 + 6) + 7 * 9
     assert sum(block.name == "closure" for block in problem.constraints.blocks) == 3
     check_derivatives(problem)
 

@@ -64,7 +64,7 @@ def test_pack_and_unpack_round_trip(problem: Problem, rng: np.random.Generator) 
     lower, upper = problem.bounds()
     x = lower + rng.uniform(size=len(lower)) * (upper - lower)
     control, force = problem.unpack(x)
-    assert control.shape == (7, 10 + 7 + 6) and force.shape == (9, 6)
+    assert control.shape == (9, 10 + 7 + 6) and force.shape == (9, 6)
     np.testing.assert_array_equal(problem.pack(control, force), x)
 
 

@@ -37,7 +37,6 @@ def test_solution_is_feasible(solved: SolverResult, small_lift: Problem) -> None
     knots, fine = space.phase, np.linspace(0.0, 1.0, 301)
     q, v, a = (space.basis(knots, order) @ control / task.duration**order for order in range(3))
     np.testing.assert_allclose(v[[0, -1]], 0.0, atol=1e-12)
-    np.testing.assert_allclose(a[[0, -1]], 0.0, atol=1e-9)
     speed = space.basis(fine, 1) @ control / task.duration
     object_rows = q[:, problem.layout.columns(2)]
     np.testing.assert_allclose(object_rows[0][2:], task.start[2:], atol=1e-12)
@@ -59,8 +58,7 @@ def test_solution_is_feasible(solved: SolverResult, small_lift: Problem) -> None
             point = data.oMf[frame].translation
             turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", object_rows[k, 3:], strict=True)]
             gap = point - object_rows[k, :3] - turn[0] @ turn[1] @ turn[2] @ lever
-            if k not in (1, len(knots) - 2):
-                assert np.abs(gap).max() <= 1e-6
+            assert np.abs(gap).max() <= 1e-6
             if agent.keep_in is not None:
                 assert agent.keep_in.normal @ point >= agent.keep_in.offset - 1e-7
 
