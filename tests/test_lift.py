@@ -121,7 +121,7 @@ def test_progress_is_told_a_line_at_a_time() -> None:
 
 
 INFEASIBLE = {
-    "too fast": (["duration=0.25"], ["infeasible: ", "too fast: the table", "at least 0.28 s, not 0.25 s"]),
+    "too fast": (["duration=0.25"], ["infeasible: ", "too fast: the table", "at least 0.26 s, not 0.25 s"]),
     "out of reach ahead": (
         ["task.standing_distance=3.5"],
         ["infeasible: out of reach at the start of the lift", "robot's grasp stays 1.4", "m short"],

@@ -127,7 +127,7 @@ def test_a_load_that_some_posture_holds_is_not_called_too_heavy() -> None:
 def test_a_lift_too_short_for_the_speed_limit_is_told_the_shortest(rest: str, ramps: float) -> None:
     """0.5 m at 2 m/s, and at both ends in all so many intervals at rest: 0.25 s * 20 / (20 - ramps).
 
-    The quadratic from rest to full speed covers two thirds of its interval; with zero acceleration it takes a cubic's two
+    The quadratic from rest to full speed covers two thirds of its interval; with zero acceleration it takes two
     intervals, of which it covers one.
     """
     still, shortest = f"task.rest={rest}", 0.25 * N / (N - ramps)

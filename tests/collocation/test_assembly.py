@@ -153,7 +153,7 @@ def test_rows_by_name(plain: tuple[Plain, np.ndarray, np.ndarray], newton_euler:
         np.testing.assert_allclose(norm.ravel(), squared / task.max_grasp_force**2, atol=1e-14)
         assert (block.upper == 1.0).all() and (block.lower == -np.inf).all()
         block, speed = rows_of(problem, g, "velocity", agent.name)
-        hull = reference.spline.derivative().c[2:8, columns]
+        hull = reference.spline.derivative().c[1:9, columns]
         np.testing.assert_allclose(speed, hull, atol=1e-11)
         np.testing.assert_allclose(block.upper.reshape(speed.shape)[0] / task.duration, agent.limits.velocity)
         np.testing.assert_array_equal(block.lower, -block.upper)
@@ -167,7 +167,7 @@ def test_rows_by_name(plain: tuple[Plain, np.ndarray, np.ndarray], newton_euler:
     np.testing.assert_allclose(balance, reference.balance(newton_euler)[:, served], atol=1e-10)
     assert not block.lower.any() and not block.upper.any()
     block, speed = rows_of(problem, g, "velocity", problem.team.held.name)
-    np.testing.assert_allclose(speed, reference.spline.derivative().c[2:8, -6:], atol=1e-11)
+    np.testing.assert_allclose(speed, reference.spline.derivative().c[1:9, -6:], atol=1e-11)
     np.testing.assert_allclose(block.upper, task.duration * np.tile(task.pose_velocity, len(speed)))
 
 

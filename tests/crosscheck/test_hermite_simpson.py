@@ -32,7 +32,12 @@ def models(solution: Any) -> tuple[Any, ...]:
 
 @pytest.fixture(scope="module")
 def study(solution: Any) -> MeshStudy:
-    return mesh_study(solution, (6, 12))
+    return mesh_study(solution, (40, 80))
+
+
+@pytest.fixture(scope="module")
+def still(solved: Callable[..., Any]) -> MeshStudy:
+    return mesh_study(solved("table5", *CHEAP, "task.rest=acceleration").solution, (6, 12))
 
 
 def test_equations_are_those_of_pinocchio_in_double_precision(models):
@@ -73,22 +78,31 @@ def test_defects_vanish_on_motions_of_third_order_and_no_higher(models):
     assert max(end_q, end_v) < 1e-12
 
 
-def test_both_optima_approach_each_other_and_the_limit_from_above(study):
-    # Measured: 39 % and 17 % apart; the limit is that of the problem without its ramps over one interval.
+def test_both_optima_agree_at_the_limit_to_a_thousandth(study):
+    # The second transcription is the oracle; it is there on 40 intervals already.
     coarse, fine = study.rows
     assert study.approaching
+    assert coarse.converged and fine.converged
+    assert coarse.hermite_simpson == pytest.approx(study.limit, rel=1e-4)
+    assert study.order == 2
+    assert study.extrapolated == pytest.approx(study.limit, rel=1e-3)
+    # Second order: of four parts of the difference one is left.
+    assert fine.difference == pytest.approx(coarse.difference / 4, rel=0.1)
+
+
+def test_ramps_of_acceleration_take_both_optima_to_the_same_limit_from_above(still):
+    # Measured: 39 % and 17 % apart; the limit is that of the problem without its ramps over one interval.
+    coarse, fine = still.rows
+    assert still.approaching
     assert abs(fine.difference) < 0.2
-    assert study.limit < fine.hermite_simpson < coarse.hermite_simpson
+    assert still.limit < fine.hermite_simpson < coarse.hermite_simpson
     assert fine.hermite_simpson < fine.spline < coarse.spline
-    for row in study.rows:
+    for row in still.rows:
         assert row.converged
-
-
-def test_extrapolated_to_no_step_both_are_at_the_limit(study):
     # The error is of first order in the step: what a halved step gains is what is left.
-    coarse, fine = study.rows
-    assert 2 * fine.hermite_simpson - coarse.hermite_simpson == pytest.approx(study.limit, rel=0.01)
-    assert 2 * fine.spline - coarse.spline == pytest.approx(study.limit, rel=0.12)
+    assert still.order == 1
+    assert 2 * fine.hermite_simpson - coarse.hermite_simpson == pytest.approx(still.limit, rel=0.01)
+    assert still.extrapolated == pytest.approx(still.limit, rel=0.12)
 
 
 def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models, solution):
@@ -107,7 +121,7 @@ def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models
 
 def test_verdict_needs_every_mesh_to_bring_the_optima_together():
     rows = [MeshRow(n, 1.0 + d, 1.0, 0.0, (0.0, 0.0), True) for n, d in ((10, 0.2), (20, 0.1), (40, 0.09))]
-    assert MeshStudy(tuple(rows[:2]), 1.0).approaching
-    stuck = MeshStudy(tuple(rows), 1.0)
+    assert MeshStudy(tuple(rows[:2]), 1.0, 2).approaching
+    stuck = MeshStudy(tuple(rows), 1.0, 2)
     assert not stuck.approaching
     assert "NOT" in render(stuck)

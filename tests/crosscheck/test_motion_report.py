@@ -42,7 +42,7 @@ def test_an_iterate_that_is_no_solution_is_refused(result):
 def test_both_tables_and_the_verdict_on_both_are_in_one_report(result, monkeypatch):
     rows = tuple(MeshRow(n, 1.0 + 1 / n, 1.0, 0.0, (0.0, 0.0), True) for n in (10, 20))
     for found, passed in ((rows, True), (rows[::-1], False)):
-        monkeypatch.setattr(report, "mesh_study", lambda *_, found=found, **__: MeshStudy(found, 1.0))
+        monkeypatch.setattr(report, "mesh_study", lambda *_, found=found, **__: MeshStudy(found, 1.0, 2))
         monkeypatch.setattr(report, "motion_report", lambda *_: (Check("a", 0.0, 1.0, "m", ""),))
         text, verdict = result_report(result.solution, transcription=True)
         assert verdict is passed
