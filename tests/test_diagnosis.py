@@ -120,11 +120,13 @@ def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, 
     assert lift(with_overrides(solution.scenario, changes), workshop=_workshop()).solved
 
 
-def test_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
+def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
     scenario = load_scenario("table5", [*BANDED, *FAR])
     before = scenario_to_dict(scenario)
     search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
-    assert remedies.Remedies(search, [], time.monotonic()).against(_solution(*FAR).reasons) == ()
+    assert remedies.Remedies(search, [], work=0.0).against(_solution(*FAR).reasons) == ()
+    search.deadline = time.monotonic()
+    assert remedies.Remedies(search, []).against(_solution(*FAR).reasons) == ()
     assert scenario_to_dict(scenario) == before
 
 
@@ -158,9 +160,9 @@ def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: py
     """The first scouts come back with nothing and the starts on the full mesh fail; those after them find the lift."""
     asked: list[int] = []
 
-    def blind(search: Search, found: Repertoire, tries: int) -> list[Plan]:
+    def blind(search: Search, found: Repertoire, tries: int, *most: int) -> list[Plan]:
         asked.append(tries)
-        return scout(search, found, tries) if len(asked) > 1 else []
+        return scout(search, found, tries, *most) if len(asked) > 1 else []
 
     def fails(self: Search, starts: list[Start]) -> Plan:
         self.obstacles = _solution(*FAR).reasons
