@@ -13,6 +13,7 @@ from liftopt.checks import Verification
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.model_file import read_model
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.likeness import difference
 from liftopt.netcdf_file import read_netcdf
 from liftopt.result_folder import MODELS, NETCDF, SCENARIO, URDF_FILES, locked, standing_result
 from liftopt.result_record import read_record
@@ -34,7 +35,8 @@ def load_result(path: str | Path) -> Solution:
     files are taken for what anybody may have made of them; see ``netcdf_file`` and ``model_file``.
 
     Raises:
-        InputError: a file is missing, is no result of liftopt, or is damaged; it says which and why.
+        InputError: a file is missing, is no result of liftopt, is damaged, or is a model of another robot or person
+            than the scenario's; it says which and why.
     """
     path = Path(path)
     file = path if path.name.endswith(".nc") else path / NETCDF
@@ -47,17 +49,38 @@ def load_result(path: str | Path) -> Solution:
         scenario = load_scenario(folder / SCENARIO)
         urdfs = {name: read_model(folder / MODELS / name) for name in URDF_FILES.values()}
     try:
-        return _solution(scenario, data, attributes, urdfs)
+        agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
+        _check_models(scenario, agents, held, folder / MODELS)
+        return _solution(scenario, urdfs, agents, held, data, attributes)
     except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
         why = f"{type(error).__name__}: {error}"
         raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
 
 
+def _check_models(scenario: Scenario, agents: tuple[Agent, ...], held: LiftedObject, folder: Path) -> None:
+    """Raise InputError if the models of a result are not those of its scenario; small numbers may differ."""
+    built, table = agents_of(scenario), object_of(scenario)
+    given: tuple[Agent | LiftedObject, ...] = (*agents, held)
+    expected: tuple[Agent | LiftedObject, ...] = (*built, table)
+    frames = [*((agent.grasp_frame,) for agent in built), table.grasp_frames]
+    for one, other, names in zip(given, expected, frames, strict=True):
+        if found := difference(one.model, other.model, names):
+            raise InputError(
+                str(folder / URDF_FILES[other.name]),
+                NO_VALUE,
+                f"is not the {other.name} of {SCENARIO} beside it: {found}; copy a result whole, or solve again",
+            )
+
+
 def _solution(
-    scenario: Scenario, data: dict[str, Array], attributes: dict[str, Any], urdfs: dict[str, str]
+    scenario: Scenario,
+    urdfs: dict[str, str],
+    agents: tuple[Agent, ...],
+    held: LiftedObject,
+    data: dict[str, Array],
+    attributes: dict[str, Any],
 ) -> Solution:
     record = read_record(str(attributes["record"]))
-    agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
     time, knots, intervals = data["time"], np.size(data["time"]), int(attributes["intervals"])
     if knots != intervals + 1 or knots > MOST_KNOTS:
         raise ValueError(f"time has {knots} values on {intervals} intervals")

@@ -222,6 +222,8 @@ def _check(agents: tuple[Agent, ...], held: LiftedObject) -> None:
     """Refuse models that the equations do not hold for."""
     if len(agents) != len(held.grasp_frames):
         raise ModelError(f"{held.name}: {len(held.grasp_frames)} grasp frames for {len(agents)} agents; give one each")
+    if not any(agent.grasp.moments for agent in agents):
+        held.unserved_row()  # refuses grasps at one point, which could hold nothing
     if np.abs(held.model.inertias[1].lever).max() > STRUCTURAL_ZERO:
         raise ModelError(f"{held.name}: its body frame must be at its centre of mass")
     for agent in agents:

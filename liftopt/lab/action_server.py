@@ -70,11 +70,7 @@ class ActionServer:
         self._tolerance = PATH_TOLERANCE[mode]
         self._names = trajectory.names
         self._top = sawyer_limits().velocity
-        extra = np.zeros_like(trajectory.position) if torque is None else torque
-        self._plan = MinimumJerk.through(
-            trajectory.time,
-            np.hstack([trajectory.position, trajectory.velocity, trajectory.acceleration, extra]),
-        )
+        self._plan = server_curve(trajectory, np.zeros_like(trajectory.position) if torque is None else torque)
         self._running = True
 
     def command(self, time: float, position: Array, velocity: Array, reference: Array) -> Command:
@@ -149,3 +145,21 @@ class MinimumJerk:
         interval = min(int(np.searchsorted(self.time, time, side="right")) - 1, len(self.coefficients) - 1)
         value: Array = (time - self.time[interval]) ** np.arange(6) @ self.coefficients[interval]
         return value
+
+    def sampled(self, steps: int) -> tuple[Array, Array, Array]:
+        """Return times (M,), the curve and its slope (M, n) there: ``steps`` + 1 times in each interval, ends twice."""
+        since = np.diff(self.time)[:, None] * np.linspace(0.0, 1.0, steps + 1)
+        value = (since[..., None] ** np.arange(6)) @ self.coefficients
+        slope = (np.arange(1, 6) * since[..., None] ** np.arange(5)) @ self.coefficients[:, 1:]
+        n = value.shape[-1]
+        return (self.time[:-1, None] + since).ravel(), value.reshape(-1, n), slope.reshape(-1, n)
+
+
+def server_curve(trajectory: JointTrajectory, *more: Array) -> MinimumJerk:
+    """Return what the server makes of a trajectory: positions, velocities, accelerations (7 each), then ``more``.
+
+    It takes the last point's velocity and acceleration for zero.
+    """
+    velocity, acceleration = trajectory.velocity.copy(), trajectory.acceleration.copy()
+    velocity[-1] = acceleration[-1] = 0.0
+    return MinimumJerk.through(trajectory.time, np.hstack([trajectory.position, velocity, acceleration, *more]))

@@ -11,7 +11,8 @@ from liftopt.lab.ros_messages import RosMessages
 
 Kind = Literal["ros1", "ros2", "mcap"]
 SUFFIX: dict[Kind, str] = {"ros1": ".bag", "ros2": "_ros2", "mcap": "_mcap"}  # of a file, of a folder, of a folder
-METADATA_VERSION: Literal[9] = 9  # that ROS 2 Humble and later read
+# The newest that ROS 2 Humble and Iron read, and later ones too: from 9 on the offered QoS are a list, not a text.
+METADATA_VERSION: Literal[8] = 8
 
 
 class Record(NamedTuple):

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import ModelError
-from liftopt.interpolation import linear, refined
 from liftopt.lab.action_server import PERIOD, ActionServer, Command, Mode
+from liftopt.lab.dry_run_plan import Plan
 from liftopt.lab.joint_trajectory import JointTrajectory, joint_trajectory
 from liftopt.lab.simulated_arm import STEP, SimulatedArm
 from liftopt.multibody.sawyer import JOINT_SIGNS
@@ -27,7 +27,6 @@ Array = npt.NDArray[np.float64]
 BEFORE, AFTER = 0.5, 0.5  # recorded before the goal is sent and after the server is done [s]
 TICKS = round(PERIOD / STEP)
 RUNAWAY = 50.0  # [rad/s]: ten times what a joint can do; MuJoCo itself would start again at its own zero
-AHEAD = 0.1  # [s]: how far along the plan an arm is sought from where it was a tick before
 FASTEST = 2.0  # seconds of the plan in a second: an arm that is late cuts corners, the person's force does not jump
 # Estimates: no figures are published for Sawyer. Half the width of what differs between trials, and the noise (one
 # standard deviation) of what the arm reports.
@@ -110,7 +109,7 @@ def dry_run(
         ModelError: the arm runs away.
     """
     trajectory = joint_trajectory(solution)
-    plan = _Plan.of(solution)
+    plan = Plan.of(solution)
     duration = float(trajectory.time[-1])
     first, last = -round(BEFORE / PERIOD), round((duration + goal_time + AFTER) / PERIOD)
     time = PERIOD * np.arange(first, last + 1, dtype=float)
@@ -125,44 +124,10 @@ def dry_run(
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Plan:
-    """The solution on a grid fine enough to interpolate, joints as the robot has them; rows over time."""
-
-    time: Array
-    position: Array
-    torque: Array
-    tip: Array
-    force: Array
-    moment: Array
-
-    @classmethod
-    def of(cls, solution: Solution) -> _Plan:
-        interval = float(solution.time[1] - solution.time[0])
-        dense = refined(solution, max(1, round(interval / STEP / 2)))
-        robot = dense.agents[1]
-        return cls(
-            dense.time,
-            JOINT_SIGNS * robot.q[:, robot.moving],
-            JOINT_SIGNS * robot.tau[:, robot.moving],
-            robot.grasp_position,
-            -robot.grasp_force,
-            -robot.grasp_moment,
-        )
-
-    def progress(self, position: Array, last: int) -> int:
-        """Return how far along the plan the arm is: the nearest row from ``last`` to ``AHEAD`` later."""
-        ahead = self.position[last : last + 1 + round(AHEAD / float(self.time[1]))]
-        return last + int(np.argmin(np.square(ahead - position).sum(axis=1)))
-
-    def at(self, rows: Array, time: Array) -> Array:
-        return linear(self.time, rows, time)
-
-
 def _trial(
     solution: Solution,
     trajectory: JointTrajectory,
-    plan: _Plan,
+    plan: Plan,
     mode: Mode,
     goal_time: float,
     time: Array,
@@ -173,20 +138,20 @@ def _trial(
     load = rng.uniform(1 - LOAD_SPREAD, 1 + LOAD_SPREAD)
     phase = int(rng.integers(TICKS))  # of the server's clock to the recorder's [steps]
     arm = SimulatedArm(solution, friction, stiff)
-    streamed = None if stiff else _above_gravity(arm, trajectory, plan)
+    streamed, holding = (None, np.zeros(7)) if stiff else _above_gravity(arm, trajectory, plan)
     server = ActionServer(mode, trajectory, goal_time, streamed)
     arm.rest(JOINT_SIGNS * trajectory.position[0], load * plan.force[0], load * plan.moment[0])
     noise = rng.standard_normal((len(time), 3, 7))
     noise *= np.array([POSITION_NOISE, VELOCITY_NOISE, 1.0])[:, None]
     noise[:, 2] *= TORQUE_NOISE * solution.agents[1].limits.tau_upper
-    reached, played, fastest = 0, 0, round(FASTEST * PERIOD / float(plan.time[1]))
-    command = _at_rest(streamed)
+    reached, played, fastest = 0, 0, round(FASTEST * PERIOD / plan.step)
+    command = Command(np.zeros(7), np.zeros(7), holding)  # before the goal: hold still
     states, tips = np.zeros((len(time), 3, 7)), np.zeros((len(time), 3))
     for k in range(len(time)):
         states[k] = JOINT_SIGNS * np.stack([arm.position, arm.velocity, arm.torque])
         if not np.all(np.abs(states[k, 1]) < RUNAWAY):
             raise ModelError(f"the simulated arm runs away in {mode} mode at {time[k]:.2f} s; try position_w_id")
-        reached = plan.progress(states[k, 0], reached)
+        reached = plan.progress(states[k, 0], reached, time[k])
         played = min(reached, played + fastest)
         force, moment = load * plan.force[played], load * plan.moment[played]
         for step in range(TICKS):
@@ -204,13 +169,12 @@ def _trial(
     return Trial(states[:, 0], states[:, 2], tips, seen[:, 0], seen[:, 1], seen[:, 2], server.outcome, server.gave_up)
 
 
-def _above_gravity(arm: SimulatedArm, trajectory: JointTrajectory, plan: _Plan) -> Array:
-    """Return what to stream (K, 7): the solved torques without what the arm adds itself, in the robot's signs."""
-    gravity = np.stack([arm.gravity(JOINT_SIGNS * q) for q in trajectory.position])
-    return plan.at(plan.torque, trajectory.time) - JOINT_SIGNS * gravity
+def _above_gravity(arm: SimulatedArm, trajectory: JointTrajectory, plan: Plan) -> tuple[Array, Array]:
+    """Return what to stream (K, 7), and (7,) to hold the start: torques without what the arm adds, in its signs.
 
-
-def _at_rest(streamed: Array | None) -> Command:
-    """Return the command before the goal: hold still."""
-    none = np.zeros(7)
-    return Command(none, none, none if streamed is None else streamed[0])
+    The last point is one of rest, as the server takes it.
+    """
+    gravity = np.stack([JOINT_SIGNS * arm.gravity(JOINT_SIGNS * q) for q in trajectory.position])
+    streamed = plan.at(plan.torque, trajectory.time) - gravity
+    streamed[-1] = plan.torque[-1] - gravity[-1]
+    return streamed, plan.torque[0] - gravity[0]

@@ -13,6 +13,7 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.interpolation import refined
 from liftopt.lab.comparison import SAMPLES, SHARE, Comparison
 from liftopt.lab.force_record import ForceRecord
+from liftopt.lab.motion_start import lift_start
 from liftopt.lab.recorded_lift import RecordedLift
 from liftopt.lab.robot_record import RobotRecord
 from liftopt.scene import robot_of
@@ -59,7 +60,7 @@ def experiment(
         solution: a solved lift.
         mocap: recorded lifts, one a trial; each lift is the time in which the object is carried.
         forces: of the hand, one a trial.
-        robot: one a trial; each lift lasts as long as the predicted one from where the record has its beginning.
+        robot: one a trial; each lift lasts as long as the predicted one from its beginning, see ``lift_start``.
         forces_lift: start and end of the lift in ``forces``, after each trial's first sample [s]; None takes the whole.
 
     Raises:
@@ -145,21 +146,28 @@ def _robot(dense: Solution, records: Sequence[RobotRecord], notes: list[str]) ->
         return
     duration, agent = float(dense.time[-1]), dense.agents[1]
     curves = robot_curves(agent, dense.scenario.robot.model)
-    angles = np.stack([record.over_share(record.q, SHARE, duration) for record in records])
+    starts = [lift_start(record, dense.time, agent.q[:, agent.moving]) for record in records]
+    angles = np.stack(
+        [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
+    )
     for i, curve in enumerate(curves):
         yield _compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
     planned = np.array([curve.q[0] for curve in curves])
-    for record, own in zip(records, np.degrees(angles), strict=True):
-        notes.append(f"{record.source}: the lift begins {record.began} and lasts {duration:g} s")
+    for record, (_, how, known), own in zip(records, starts, np.degrees(angles), strict=True):
+        notes.append(f"{record.source}: the lift begins {how} and lasts {duration:g} s")
+        if known:
+            notes.append(f"{record.source}: {known}")
         off = float(np.abs(own[0] - planned).max())
         if off > ELSEWHERE:
             notes.append(f"{record.source}: the robot starts {off:.0f} deg off the prediction: is it this lift?")
         if record.tau is None:
             notes.append(f"{record.source}: not every message holds efforts: left out of the torques")
-    felt = [(record, record.tau) for record in records if record.tau is not None]
+    felt = [
+        (record, record.tau, at) for record, (at, *_) in zip(records, starts, strict=True) if record.tau is not None
+    ]
     if not felt:
         return
-    torques = np.stack([record.over_share(tau, SHARE, duration) for record, tau in felt])
+    torques = np.stack([record.over_share(tau, SHARE, at, duration) for record, tau, at in felt])
     for i, curve in enumerate(curves):
         yield _compared("robot_torque", curve.joint, curve.label, "Nm", dense, curve.tau, torques[:, :, i])
     notes.append(

@@ -57,7 +57,11 @@ def joint_trajectory(solution: Solution, rate: float = RATE) -> JointTrajectory:
     rate = checked_number("--rate", rate, 10.0, 1000.0, "Hz")
     duration = float(solution.time[-1])
     time = np.append(np.arange(int(np.ceil(duration * rate - SHORTEST))) / rate, duration)
+    return JointTrajectory(JOINTS, time, *robot_motion(solution, time))
+
+
+def robot_motion(solution: Solution, time: Array) -> tuple[Array, Array, Array]:
+    """Return position, velocity and acceleration (T, 7) of the robot's joints, in its own signs, at ``time`` (T,)."""
     robot = solution.agents[1]
-    knots = [JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.a)]
-    q, v, a = motion_between(solution.time, knots[0], knots[1], knots[2], time)
-    return JointTrajectory(JOINTS, time, q, v, a)
+    q, v, a = (JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.a))
+    return motion_between(solution.time, q, v, a, time)

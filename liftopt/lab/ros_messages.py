@@ -21,6 +21,8 @@ SECOND = 1_000_000_000  # [ns]
 
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 JOINT_STATE = "sensor_msgs/msg/JointState"
+LOG = "rosgraph_msgs/msg/Log"
+FEEDBACK = "control_msgs/msg/FollowJointTrajectoryActionFeedback"
 ROS1_GOAL = "control_msgs/msg/FollowJointTrajectoryActionGoal"
 ROS2_GOAL = "control_msgs/action/FollowJointTrajectory_Goal"
 

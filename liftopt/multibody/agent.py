@@ -13,8 +13,8 @@ from liftopt.errors import ModelError
 Array = npt.NDArray[np.float64]
 
 
-# Grasp points nearer to a line than this are on it [m].
-SAME_LINE = 1e-9
+# Grasp points nearer to each other, or to a line, than this are at one point, or on that line [m].
+SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -143,17 +143,24 @@ class LiftedObject:
     def unserved_row(self) -> int | None:
         """Return which of the six rows of balance the point grasps cannot serve; None if they serve them all.
 
-        Forces at points on one line cannot turn the body about that line.
+        It is the rank of the grasp map, which takes their forces to force and moment on the body: 6 in general; 5 for
+        points on one line, about which they cannot turn the body; 3 for a single point, about which they cannot at all.
 
         Raises:
-            ModelError: the points lie on a line that is not parallel to an axis of the body.
+            ModelError: the points are one point, or lie on a line that is not parallel to an axis of the body.
         """
         points = [self.model.frames[self.model.getFrameId(name)].placement.translation for name in self.grasp_frames]
-        spread = np.array(points) - points[0]
-        _, extents, axes = np.linalg.svd(np.atleast_2d(spread))
-        if len(extents) > 1 and extents[1] > SAME_LINE:
+        _, extents, axes = np.linalg.svd(np.array(points) - np.mean(points, axis=0))
+        apart = int(np.count_nonzero(extents > SAME_PLACE))
+        if apart > 1:
             return None
-        along = np.flatnonzero(np.abs(axes[0]) > SAME_LINE)
+        if apart == 0:
+            held = "held at one point only" if len(points) == 1 else f"held by {len(points)} grasps at one point"
+            raise ModelError(
+                f"{self.name}: {held}, where forces cannot turn it: nothing holds its moments about x, y and z; hold "
+                "it at points apart, or let a grasp transmit moments too (grasp = 'wrench')"
+            )
+        along = np.flatnonzero(np.abs(axes[0]) > SAME_PLACE)
         if len(along) > 1:
             raise ModelError(
                 f"{self.name}: the grasp points lie on a line along {np.round(axes[0], 3).tolist()} in the body; "

@@ -17,7 +17,7 @@ from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario import Scenario
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scene import agents_of, motions_of, object_of, task_of
 from liftopt.verify import verify
 from liftopt.workshop import Workshop
 
@@ -44,7 +44,7 @@ class Case:
     @staticmethod
     def of(scenario: Scenario, ends: Ends, intervals: int = 20) -> Case:
         """Build the problem; the start joins two postures by the quintic of minimum jerk."""
-        spline = RestToRestSpline(intervals)
+        spline = motions_of(scenario, intervals)
         team = Team.of(agents_of(scenario), object_of(scenario), print)
         problem = Problem(team, task_of(scenario), spline.mesh())
         first, last = (

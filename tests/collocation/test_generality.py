@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -16,7 +17,7 @@ from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import ModelError
-from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.multibody.human import Subject, human_agent
 from liftopt.multibody.sawyer import sawyer_agent
 
@@ -27,6 +28,11 @@ EDGES = np.array([[-0.225, 0.0, -0.01], [0.225, 0.0, -0.01]])
 def _virtual_machine(team: Team, monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep what the default team compiled, and compile nothing more."""
     monkeypatch.setenv("CC", "")
+
+
+def grasp_map(points: np.ndarray) -> np.ndarray:
+    """Return the map (6, 3n) from forces at points (n, 3) to force and moment about the centre of mass."""
+    return np.vstack([np.hstack([np.eye(3)] * len(points)), np.hstack([pin.skew(point) for point in points])])
 
 
 def solve(problem: Problem) -> None:
@@ -92,8 +98,7 @@ def test_three_grasps_off_one_line_balance_about_every_axis(
 ) -> None:
     """Statics: three point grasps that are not on a line can serve all six rows, so equality must ask for all six."""
     grasps = np.vstack([EDGES, [[0.0, 0.15, -0.01]]])
-    wrench = np.vstack([np.hstack([np.eye(3)] * 3), np.hstack([pin.skew(point) for point in grasps])])
-    assert np.linalg.matrix_rank(wrench) == 6
+    assert np.linalg.matrix_rank(grasp_map(grasps)) == 6
     team = Team.of(tuple(make_arm(i, f"arm{i}") for i in range(3)), make_box(grasps))
     problem = Problem(team, make_task(3), RestToRestSpline(6).mesh())
     (block,) = (block for block in problem.constraints.blocks if block.name == "balance")
@@ -115,6 +120,48 @@ def test_grasps_on_a_skew_line_are_refused(make_box: Callable[..., LiftedObject]
     held = make_box(np.array([[-0.3, 0.1, 0.0], [0.3, -0.1, 0.0]]))
     with pytest.raises(ModelError, match="axes"):
         held.unserved_row()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("beside", [0.0, 1e-9], ids=["exact", "rounded"])
+def test_grasps_at_one_point_are_refused(
+    make_arm: Callable[..., Agent],
+    make_box: Callable[..., LiftedObject],
+    count: int,
+    beside: float,
+) -> None:
+    """Statics: of such forces NumPy finds a grasp map of rank 3, so three moments stay unserved."""
+    grasps = EDGES[0] + beside * np.arange(3 * count).reshape(count, 3)
+    assert np.linalg.matrix_rank(grasp_map(grasps), tol=1e-6) == 3
+    agents = tuple(make_arm(i, f"arm{i}") for i in range(count))
+    held = "held at one point only" if count == 1 else f"held by {count} grasps at one point"
+    with pytest.raises(ModelError, match=f"{held}, where forces cannot turn it"):
+        Team.of(agents, make_box(grasps))
+
+
+def test_a_single_grasp_that_transmits_moments_holds(
+    make_arm: Callable[..., Agent], make_box: Callable[..., LiftedObject], make_task: Callable[..., LiftTask]
+) -> None:
+    """Statics: a force and a moment at one point are a grasp map of rank 6."""
+    agent = replace(make_arm(1), grasp=Grasp(moments=True, max_moment=10.0))
+    assert np.linalg.matrix_rank(np.hstack([grasp_map(EDGES[:1]), np.eye(6)[:, 3:]])) == 6
+    problem = Problem(Team.of((agent,), make_box(EDGES[:1])), make_task(1), RestToRestSpline(6).mesh())
+    (block,) = (block for block in problem.constraints.blocks if block.name == "balance")
+    assert len(block.labels) == 6
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rows_served_are_the_rank_of_the_grasp_map(make_box: Callable[..., LiftedObject], seed: int) -> None:
+    """NumPy's rank of the map from point forces to force and moment, for points on an axis and anywhere."""
+    rng = np.random.default_rng(seed)
+    count, axis = int(rng.integers(2, 6)), int(rng.integers(3))
+    anywhere = rng.uniform(-0.3, 0.3, (count, 3))
+    in_line = anywhere[0] + rng.uniform(-0.3, 0.3, (count, 1)) * np.eye(3)[axis]
+    assert np.linalg.matrix_rank(grasp_map(in_line), tol=1e-6) == 5
+    assert make_box(in_line).unserved_row() == 3 + axis
+    if count > 2:
+        assert np.linalg.matrix_rank(grasp_map(anywhere), tol=1e-6) == 6
+        assert make_box(anywhere).unserved_row() is None
 
 
 def test_grasps_that_do_not_match_the_agents_are_refused(

@@ -14,14 +14,14 @@ import pytest
 from liftopt.cli import BAD_INPUT, SOLVED, main
 from liftopt.lab.action_server import PERIOD, ActionServer, MinimumJerk
 from liftopt.lab.dry_run import BEFORE, POSITION_NOISE, DryRun, dry_run
+from liftopt.lab.dry_run_plan import Plan
 from liftopt.lab.dry_run_summary import summarised
 from liftopt.lab.joint_trajectory import JOINTS, joint_trajectory
 from liftopt.lab.simulated_arm import STEP, SimulatedArm
 from liftopt.multibody.sawyer import JOINT_SIGNS
 from liftopt.scene import agents_of
 
-# Controllers of joints take no step of acceleration.
-CHEAP = ("solver.intervals=10", "solver.starts=1", "task.rest=acceleration")
+CHEAP = ("solver.intervals=10", "solver.starts=1")
 GOAL_TIME = 2.0
 
 
@@ -143,6 +143,27 @@ def test_before_the_goal_the_arm_carries_the_solutions_load_at_rest(runs):
     np.testing.assert_allclose(run.trials[0].tip[still], run.planned_tip[still], rtol=0, atol=1e-5)
     noise = run.trials[0].measured_position - run.trials[0].position
     assert noise.std() == pytest.approx(POSITION_NOISE, rel=0.1)
+
+
+def test_at_rest_before_and_after_the_object_is_in_balance(result, solved):
+    """Oracles: the sums of forces and of moments by hand, Pinocchio's gravity torques, the motion itself at rest."""
+    solution = result.solution
+    plan, held = Plan.of(solution), solution.held
+    assert np.abs(held.acceleration[[0, -1], :3]).max() > 1.0  # or motion and rest were the same
+    _, robot = agents_of(solution.scenario, solution.urdfs)
+    moving, data, frame = solution.agents[1].moving, robot.model.createData(), robot.model.getFrameId("robot_grasp")
+    for row, k in ((0, 0), (-1, -1)):
+        on_object = -plan.force[row]
+        others = np.array([0.0, 0.0, 2.0 * 9.81]) - on_object  # the person's, so that nothing accelerates
+        arms = held.grasp_position[k] - held.pose[k, :3]
+        np.testing.assert_allclose(np.cross(arms[0], others) + np.cross(arms[1], on_object), 0.0, atol=1e-6)
+        q = solution.agents[1].q[k]
+        pull = pin.computeFrameJacobian(robot.model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3].T @ plan.force[row]
+        torque = pin.computeGeneralizedGravity(robot.model, data, q) - pull
+        np.testing.assert_allclose(plan.torque[row], JOINT_SIGNS * torque[moving], atol=1e-6)
+    gentle = Plan.of(solved("table5", *CHEAP, "task.rest=acceleration").solution)
+    for rows in (gentle.force, gentle.moment, gentle.torque):
+        np.testing.assert_allclose(rows[[0, -1]], rows[[1, -2]], atol=1e-5)
 
 
 def test_streamed_torques_alone_do_not_hold_the_motion(result):
