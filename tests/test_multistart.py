@@ -49,7 +49,7 @@ class Slow:
 def test_results_come_in_the_order_of_the_starts(workers: int) -> None:
     starts = [Start(f"start {i}", np.array([wait])) for i, wait in enumerate((0.03, 0.0, 0.02, 0.0, 0.01, 0.0))]
     solvers = [Slow() for _ in range(workers)]
-    results = list(solve_all(solvers, starts, time.monotonic() + 60.0))
+    results = list(solve_all(solvers, starts, np.inf))
     assert [result.objective for result in results] == [float(start.x[0]) for start in starts]
     assert all(solver.given for solver in solvers)
 
@@ -61,7 +61,7 @@ def test_the_first_optimum_is_the_rival_of_all_that_join_moves(workers: int) -> 
     starts.append(Start("naive", np.array([0.01])))
     for converges in (True, False):
         solvers = [Slow(converges=converges) for _ in range(workers)]
-        list(solve_all(solvers, starts, time.monotonic() + 60.0))
+        list(solve_all(solvers, starts, np.inf))
         given = {x: r for solver in solvers for x, r in solver.rivals.items()}
         assert given[0.03] is given[0.01] is None
         assert all((r.objective, r.converged) == (0.03, converges) for r in (given[0.0], given[0.02]) if r)
@@ -70,7 +70,7 @@ def test_the_first_optimum_is_the_rival_of_all_that_join_moves(workers: int) -> 
 
 def test_each_start_gets_its_share_in_iterations_and_all_the_time() -> None:
     """A share of the time that is left would make what is found depend on how busy the machine is."""
-    solver, late = Slow(), time.monotonic() + 60.0
+    solver, late = Slow(), np.inf
     list(solve_all([solver], [Start("a", np.zeros(1)), Start("b", np.zeros(1))], late, most=7))
     assert solver.given == [(late, 7)] * 2
 
