@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from liftopt.collocation.guess import Start, recombined, turned
+from liftopt.collocation.postures import rounded
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.abreast import abreast
 from liftopt.collocation.solvers.result import Solver, SolverResult
-
 
 def solve_all(
     solvers: Sequence[Solver],
@@ -66,7 +66,7 @@ def solve_each(
 
     def job(start: Start, rival: SolverResult | None) -> Callable[[Solver], SolverResult]:
         def solve(solver: Solver) -> SolverResult:
-            return solver.solve(start.x, deadline=deadline, problem=problem, rival=rival, most=most)
+            return solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=rival, most=most)
 
         return solve
 
@@ -101,6 +101,6 @@ def follow_up(
             return
         best = min(optima, key=lambda result: result.objective)
         if (start := make(best)) is not None:
-            result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
+            result = solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=best)
             optima += [result] if result.converged else []
             yield start, result
