@@ -11,6 +11,7 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.abreast import abreast
 from liftopt.collocation.solvers.result import Solver, SolverResult
 
+
 def solve_all(
     solvers: Sequence[Solver],
     starts: Sequence[Start],

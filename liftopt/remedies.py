@@ -182,9 +182,7 @@ class Remedies:
             plan = Plan(plan.scenario, problem, finer, plan.start, self._solve(problem, plan.scenario, start))
         return plan.solved
 
-    def _solve(
-        self, problem: Problem, scenario: Scenario, x: Array, warm: Multipliers | None = None
-    ) -> SolverResult:
+    def _solve(self, problem: Problem, scenario: Scenario, x: Array, warm: Multipliers | None = None) -> SolverResult:
         """Solve from ``x`` (n_x,), and count it as work."""
         solver = self._solver(problem, scenario)
         result = solver.solve(x, deadline=self.search.deadline, warm=warm, problem=problem, most=ITERATIONS)

@@ -202,10 +202,14 @@ def explained(found: dict[str, list[dict[str, Any]]]) -> Iterator[str]:
     for n, one in enumerate(first):
         for name, entries in found.items():
             if entries and not agrees(entries[n], one, by_name[name]):
-                yield f"- {n}, {name}: " + "; ".join(
-                    f"{e['verdict']}, J = {e['objective']:.9g} from {e['kept']} (N = {e['intervals']})"
-                    for e in (one, entries[n])
-                ) + f"; {' '.join(one['overrides'])}"
+                yield (
+                    f"- {n}, {name}: "
+                    + "; ".join(
+                        f"{e['verdict']}, J = {e['objective']:.9g} from {e['kept']} (N = {e['intervals']})"
+                        for e in (one, entries[n])
+                    )
+                    + f"; {' '.join(one['overrides'])}"
+                )
 
 
 def main(words: Sequence[str] | None = None) -> int:

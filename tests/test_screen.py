@@ -110,9 +110,7 @@ def test_a_half_space_that_keeps_the_hand_away_is_named() -> None:
     problem = _problem()
     human, robot = problem.team.agents
     walled = replace(human, keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.55))
-    obstacles, _ = screen(
-        replace(problem, team=replace(problem.team, agents=(walled, robot))), 0, np.inf
-    )
+    obstacles, _ = screen(replace(problem, team=replace(problem.team, agents=(walled, robot))), 0, np.inf)
     assert [(o.constraint, o.who, o.unit) for o in obstacles] == [("keep_in", "human", "m")] * 2
     for obstacle in obstacles:
         assert obstacle.amount == pytest.approx(0.15, abs=1e-4)

@@ -2,8 +2,8 @@
 
 Levenberg's and Marquardt's method on the grasp gaps, in its dual form: the steps have the least norm, so a posture
 stays near its seed, and the systems to solve are as small as the number of gaps. Joints at a limit that a step
-would cross are held for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the processor
-has it, and its threads take longer to wake than such small systems to solve.
+would cross are held for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the
+processor has it, and its threads take longer to wake than such small systems to solve.
 """
 
 from __future__ import annotations

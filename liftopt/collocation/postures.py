@@ -116,7 +116,7 @@ def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: float)
     result = solver.solve(start, deadline=deadline, problem=problem)
     if not result.converged:
         return None
-    control, force = problem.unpack(rounded(result.x))
+    control, force = problem.unpack(result.x)
     return Posture(control[0], force[0], result.objective)
 
 

@@ -70,9 +70,7 @@ class Ipopt:
             SolverError: CasADi's IPOPT cannot be had.
         """
         self.problem, self.options, self._wide = problem, options or IpoptOptions(), wide
-        self._stop = _Stop(
-            len(problem.bounds()[0]), problem.constraints.linear.shape[0], len(problem.parameters)
-        )
+        self._stop = _Stop(len(problem.bounds()[0]), problem.constraints.linear.shape[0], len(problem.parameters))
         self._solvers: dict[bool, Any] = {}
 
     def solve(
