@@ -117,7 +117,7 @@ def test_postures_held_two_at_a_time_are_the_same_bit_by_bit(team: Team, make_ta
     alone = PostureSolver(team, task)
     both = PostureSolver(team, task, like=alone, workers=2)
     one, other = (list(solver.search(task.start, seeds, np.inf)) for solver in (alone, both))
-    assert sum(posture is not None for posture in one) > 6
+    assert sum(posture is not None for posture in one) > 2
     for first, second in zip(one, other, strict=True):
         assert (first is None) == (second is None)
         if first and second:
