@@ -99,6 +99,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     solve.add_argument(
+        "--details", action="store_true", help="print all findings, and tables of joints, forces, starts and checks too"
+    )
+    solve.add_argument(
         "--refine",
         action="append_const",
         const="refine.on=true",
@@ -186,15 +189,19 @@ def _solve(args: argparse.Namespace) -> int:
     with _output_folder(out), _progress() as progress:
         with _no_collection():
             from liftopt.lift import lift
-            from liftopt.summary import summary_dict
+            from liftopt.result_writer import save
 
-        solution = lift(scenario, out=out, progress=progress)
+        solution = lift(scenario, progress=progress)
+        progress("writing the result")
+        folder = save(solution, out)
+    from liftopt.commands.solved_text import solved_text
 
-    summary = summary_dict(solution, out)
-    _write(json.dumps(summary, allow_nan=False) + "\n" if args.json else _as_text(summary))
-    if summary["solved"]:
+    _write(solved_text(solution, folder, as_json=args.json, details=args.details))
+    if solution.solved:
         return SOLVED
-    _complain(f"no verified solution: {summary['reason']}; the best iterate is in {out}, marked as such")
+    from liftopt.assessment.failure_text import failure_text
+
+    _say_on_stderr(f"liftopt: error: {failure_text(solution, out, folder)}")
     return NOT_SOLVED
 
 
@@ -311,17 +318,6 @@ def _progress() -> Iterator[Callable[[str], None]]:
             yield show
 
 
-def _as_text(summary: dict[str, Any]) -> str:
-    from rich.console import Console
-
-    from liftopt.summary_text import print_summary
-
-    console = Console()
-    with console.capture() as capture:
-        print_summary(summary, console)
-    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
-
-
 def _view(args: argparse.Namespace) -> int:
     from liftopt.viz.viewer import view
 
@@ -365,7 +361,13 @@ def _no_collection() -> Iterator[None]:
 
 
 def _complain(message: str) -> None:
-    print("liftopt: error:", " ".join(message.split()), file=sys.stderr)
+    _say_on_stderr(f"liftopt: error: {' '.join(message.split())}\n")
+
+
+def _say_on_stderr(text: str) -> None:
+    encoding = sys.stderr.encoding or "utf-8"
+    sys.stderr.write(text.encode(encoding, "replace").decode(encoding))
+    sys.stderr.flush()
 
 
 def _write(text: str) -> None:

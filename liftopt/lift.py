@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from liftopt import result_writer
 from liftopt.accuracy import Accuracy
+from liftopt.assessment.assess import assessed
 from liftopt.collocation.guess import Start, blend, naive_start, repertoire
 from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, Solver, SolverResult
@@ -56,7 +57,7 @@ def lift(
 
     Args:
         scenario: what to lift.
-        out: folder to write the result to, or None.
+        out: folder to write the result to, or None; see ``result_writer.save`` for where an iterate goes.
         progress: hears one line at a time of what is going on.
         workshop: keeps what the next lift can use again; None keeps nothing.
 
@@ -70,7 +71,7 @@ def lift(
             progress(line)
 
     search = Search(scenario, workshop or Workshop(), motions_of(scenario), say)
-    solution = search.explained(search.sharpened(search.best()))
+    solution = assessed(search.explained(search.sharpened(search.best())))
     if out is not None:
         say("writing the result")
         result_writer.save(solution, out)

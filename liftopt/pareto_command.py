@@ -97,12 +97,13 @@ def front_dict(front: Front) -> dict[str, Any]:
 
 def _row(point: Point, dominated: bool) -> dict[str, Any]:
     """Return figures of a point, units in the names."""
+    import numpy as np
+
+    from liftopt.checks import FINER
     from liftopt.summary import limit_share
 
-    human, robot = (
-        float(limit_share(agent).max())
-        for agent in point.plan.at(point.plan.spline.phase * point.plan.problem.task.duration).agents
-    )
+    times = np.linspace(0.0, point.plan.problem.task.duration, FINER * point.plan.spline.intervals + 1)
+    human, robot = (float(limit_share(agent).max()) for agent in point.plan.at(times).agents)
     return {
         "human_weight": point.weights[0],
         "robot_weight": point.weights[1],

@@ -201,7 +201,10 @@ class Remedies:
         if scenario is None:
             return None
         workshop, spline = self.search.workshop, self.search.spline
-        problem = workshop.problem(scenario, spline)
+        try:
+            problem = workshop.problem(scenario, spline)
+        except InputError:  # the change leaves what a model can be
+            return None
         if too_fast(problem):
             return None
 

@@ -5,6 +5,9 @@ older ones are kept, as they stand, in ``.older-result``; after the last one tha
 renaming is what makes the newer result count. As long as ``.older-result`` is there, it is the result: a reader looks
 there, and the next writer puts it back first. Writers and readers keep each other out by a lock on the folder, which
 the system takes back from a process that dies. Other files in the folder are never touched.
+
+A solve that failed never replaces a solved result: its iterate is a result of its own, in the folder ``unsolved``
+within.
 """
 
 from __future__ import annotations
@@ -24,6 +27,7 @@ NETCDF, SCENARIO, MODELS = "solution.nc", "scenario.toml", "models"
 URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 # In the order in which they are put in place.
 FILES = (*(f"{MODELS}/{name}" for name in URDF_FILES.values()), SCENARIO, NETCDF)
+UNSOLVED = "unsolved"  # folder for the iterate of a failed solve, within that of a solved result
 OLDER, WORK_PREFIX = ".older-result", ".writing-result-"
 PATIENCE = 10.0  # seconds; a result is written in a tenth of one
 

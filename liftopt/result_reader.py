@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.assessment.assess import assessed
 from liftopt.checks import Verification
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.model_file import read_model
@@ -16,7 +17,7 @@ from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.likeness import difference
 from liftopt.netcdf_file import read_netcdf
 from liftopt.result_folder import MODELS, NETCDF, SCENARIO, URDF_FILES, locked, standing_result
-from liftopt.result_record import read_record
+from liftopt.result_record import read_assessment, read_record
 from liftopt.scenario import Scenario, load_scenario
 from liftopt.scene import agents_of, object_of
 from liftopt.solution import Solution
@@ -92,7 +93,7 @@ def _solution(
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
     # Files from before there were moments have none.
     moments = _array(data, "grasp_moment", forces.shape) if "grasp_moment" in data else np.zeros_like(forces)
-    return Solution(
+    solution = Solution(
         scenario=scenario,
         outcome=record.outcome,
         time=time,
@@ -113,6 +114,9 @@ def _solution(
         reasons=record.reasons,
         remedies=record.remedies,
     )
+    if "assessment" not in attributes:  # as files from before there was one
+        return assessed(solution)
+    return replace(solution, assessment=read_assessment(str(attributes["assessment"])))
 
 
 def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:

@@ -82,7 +82,7 @@ class GraspPose:
     A tilted object has ``height`` midway between its grasp points; ``human_distance`` is that of the human's.
     """
 
-    height: Annotated[float, Number("height of the grasp points above the floor, midway if tilted", "m", 0.05, 2.2)]
+    height: Annotated[float, Number("height of the held edges, midway if tilted (not of the centre)", "m", 0.05, 2.2)]
     human_distance: Annotated[float | None, Number("human grasp ahead of the feet", "m", 0.0, 2.0, word="free")]
     pitch_deg: Annotated[float, Number("tilt of the object, above 0 with the robot's edge lower", "deg", -60, 60)] = 0.0
 

@@ -130,6 +130,15 @@ def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
     assert scenario_to_dict(scenario) == before
 
 
+def test_a_change_that_leaves_what_a_model_can_be_is_no_remedy() -> None:
+    """A scenario takes a base height of 0.01 m, Sawyer's model none below 0.1 m."""
+    scenario = load_scenario("table5", [*BANDED, "robot.base_height=0.3"])
+    search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
+    (lever,) = [lever for lever in remedies.levers(scenario) if lever.keys == ("robot.base_height",)]
+    deadline = time.monotonic() + 60.0
+    assert remedies.Remedies(search, [], deadline)._plan(lever, -29, deadline, None) is None
+
+
 def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

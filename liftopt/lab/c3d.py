@@ -1,134 +1,154 @@
-"""C3D files, read through ezc3d."""
+"""C3D files of any maker: markers, analog channels and force plates.
+
+Our own reader, since libraries refuse or crash on files that are complete but for a parameter that says nothing new.
+"""
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.extra import check_extra
-from liftopt.lab.recording import METRES, TO_Z_UP, AnalogChannels, Array, ForcePlate, Recording, checked_recording
+from liftopt.lab.c3d_frames import LAST_COUNTED, FrameLayout, data_start, frame_layout, frame_numbers, stated_frames
+from liftopt.lab.c3d_parameters import BLOCK, C3dHeader, C3dParameters, parameter_start, read_header
+from liftopt.lab.c3d_plates import force_plates
+from liftopt.lab.recording import TO_Z_UP, AnalogChannels, Array, ForcePlate, Recording, checked_recording
+from liftopt.regular_file import read_regular
 
-PATIENCE = 300.0  # seconds for one file; a minute of markers and analog channels takes one
+LARGEST_FILE = 2**31  # bytes; an hour of 60 markers at 100 Hz and 16 channels at 1000 Hz is a sixth of it
 
 
 def read_c3d(path: Path) -> Recording:
     """Return the markers, analog channels and force plates of a C3D file.
 
     A point whose residual is negative was not seen. A file that holds fewer frames than its header says is read as far
-    as it goes, and that is noted.
+    as it goes, and that is noted; so is whatever had to be taken from elsewhere because a parameter is missing.
 
     Raises:
-        InputError: the file cannot be read, is no C3D file or is damaged, has no markers or frames; or ezc3d is
-            missing.
+        InputError: the file cannot be read, is no C3D file or is damaged, or has no markers or frames.
     """
-    check_extra("ezc3d", "read C3D files")
     source = str(path)
-    _look_at_start(path)
-    arrays = _contents(path)
-    about = json.loads(str(arrays["about"]))
-    points, residuals = arrays["points"], arrays["residuals"]
-    if residuals.shape == points.shape[:2]:
-        points = np.where((residuals < 0.0)[:, :, None], np.nan, points)
-    frames, notes = len(points), []
-    if frames != about["stated"]:
-        if not frames:
-            raise InputError(source, NO_VALUE, f"is cut short: no frame is left of the {about['stated']} of its header")
-        notes.append(
-            f"the header says {about['stated']} frames, the file holds {frames}: it is cut short or mislabelled"
-        )
-    labels = about["labels"][: points.shape[1]]
-    labels += [""] * (points.shape[1] - len(labels))
-    if about["plate_error"]:
-        notes.append(f"force plates are stated but could not be read: {about['plate_error']}")
-    rate, screen = about["rate"], about["screen"].replace("+", "").upper()
-    start = about["first"] / rate if rate > 0.0 else 0.0
+    content = _content(path)
+    header, notes = read_header(content)
+    start = _bounded(header.data_block, len(content))
+    parameters = C3dParameters(content[:start], header.processor)
+    if parameters.damage:
+        notes.append(f"its parameters are damaged or incomplete: {parameters.damage}")
+    start = data_start(source, header, parameters, content)
+    available = len(content) - start
+    layout, more = frame_layout(header, parameters, stated_frames(header, parameters, available, 0)[0], available)
+    notes += more
+    stated, first = stated_frames(header, parameters, available, layout.size)
+    _check(source, stated, layout)
+    unsigned = "UNSIGNED" in (text.upper() for text in parameters.texts("ANALOG", "FORMAT"))
+    points, fourth, raw = frame_numbers(content, start, header, layout, stated, unsigned)
+    frames = len(points)
+    if not frames:
+        raise InputError(source, NO_VALUE, f"is cut short: no frame is left of the {stated} of its header")
+    named = header.last - header.first + 1
+    if frames != stated or (named != stated and 0 < named < LAST_COUNTED - header.first):
+        of_header = stated if frames != stated else named
+        notes.append(f"the header says {of_header} frames, the file holds {frames}: it is cut short or mislabelled")
+    rate = _rate(header, parameters, notes)
+    analog, more = _analog(raw, layout, rate, parameters, unsigned)
+    units = next(iter(parameters.texts("POINT", "UNITS")), "")
+    screen = next(iter(parameters.texts("POINT", "Y_SCREEN")), "").replace("+", "").upper()
+    plates, trouble = _plates(parameters, analog, units)
+    labels = parameters.texts("POINT", "LABELS")[: layout.points]
+    labels += [""] * (layout.points - len(labels))
+    begin = (first - 1) / rate if rate > 0.0 else 0.0
     return checked_recording(
         Recording(
             source=source,
             rate=rate,
-            time=start + np.arange(frames) / rate if rate > 0.0 else np.zeros(frames),
+            time=begin + np.arange(frames) / rate if rate > 0.0 else np.zeros(frames),
             labels=tuple(labels),
-            points=np.asarray(points, dtype=float),
-            units=about["units"] or None,
+            points=np.where((fourth < 0.0)[:, :, None], np.nan, points),
+            units=units or None,
             up=screen if screen in TO_Z_UP else None,
-            analog=_analog(arrays["analogs"], about),
-            plates=_plates(arrays, about),
-            notes=tuple(notes),
+            analog=analog,
+            plates=plates,
+            notes=tuple([*notes, *more, *trouble]),
         )
     )
 
 
-def _look_at_start(path: Path) -> None:
+def _content(path: Path) -> bytes:
     source = str(path)
     try:
-        if path.exists() and not path.is_file():
-            raise InputError(source, NO_VALUE, "is not a file")
-        with path.open("rb") as file:
-            start = file.read(512)
+        content = read_regular(path, LARGEST_FILE, "expected a C3D file")
     except FileNotFoundError:
         raise InputError(source, NO_VALUE, "no such file") from None
-    except (OSError, ValueError) as error:
-        raise InputError(source, NO_VALUE, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if not start:
+    if not content:
         raise InputError(source, NO_VALUE, "is empty")
-    if len(start) < 2 or start[1] != 0x50:  # the key of every C3D file
+    if len(content) < 2 or content[1] != 0x50:  # the key of every C3D file
         raise InputError(source, NO_VALUE, "is not a C3D file (its second byte is not 0x50)")
-    if len(start) < 512:
-        raise InputError(source, NO_VALUE, f"is cut short within its header: {len(start)} of 512 bytes")
+    if len(content) < BLOCK:
+        raise InputError(source, NO_VALUE, f"is cut short within its header: {len(content)} of {BLOCK} bytes")
+    if parameter_start(content) + 4 > len(content):
+        raise InputError(source, NO_VALUE, "is cut short: it ends before its parameters")
+    return content
 
 
-def _contents(path: Path) -> dict[str, Any]:
-    source = str(path)
-    with tempfile.TemporaryDirectory(prefix="liftopt-c3d-") as folder:
-        out = Path(folder) / "contents.npz"
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))}
-        command = [sys.executable, "-m", "liftopt.lab.c3d_child", str(path.absolute()), str(out)]
-        try:
-            run = subprocess.run(
-                command, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False, cwd=folder
-            )
-        except subprocess.TimeoutExpired:
-            raise InputError(source, NO_VALUE, f"could not be read within {PATIENCE:g} s; it is damaged") from None
-        if run.returncode < 0:
-            raise InputError(
-                source, NO_VALUE, "ezc3d crashes on it: its header or parameters are damaged or incomplete"
-            )
-        if run.returncode or not out.exists():
-            reason = run.stderr.strip().split("\n")[-1]
-            raise InputError(source, NO_VALUE, f"cannot be read as C3D: {reason or 'no reason was given'}")
-        with np.load(out) as arrays:
-            return dict(arrays)
+def _bounded(block: int, size: int) -> int:
+    """Return where parameters must have ended: at the frames, if the header says where these start."""
+    return BLOCK * (block - 1) if block > 2 and BLOCK * (block - 1) <= size else size
 
 
-def _analog(values: Array, about: dict[str, Any]) -> AnalogChannels | None:
-    if not values.size:
-        return None
-    count = values.shape[1]
-    labels = (about["analog_labels"] + [f"channel {i + 1}" for i in range(len(about["analog_labels"]), count)])[:count]
-    units = (about["analog_units"] + [""] * count)[:count]
-    return AnalogChannels(about["analog_rate"], tuple(labels), tuple(units), np.asarray(values, dtype=float))
+def _check(source: str, stated: int, layout: FrameLayout) -> None:
+    if not layout.points:
+        raise InputError(source, NO_VALUE, "holds no markers, so there is no motion to be had from it")
+    if stated <= 0:
+        raise InputError(source, NO_VALUE, "states no frames, neither in its header nor in POINT:FRAMES")
 
 
-def _plates(arrays: dict[str, Any], about: dict[str, Any]) -> tuple[ForcePlate, ...]:
-    plates = []
-    for i, (_, moment_unit, length_unit) in enumerate(about["plate_units"]):
-        lever = METRES.get(str(moment_unit).lower().removeprefix("n"), METRES.get(str(length_unit).lower(), 1.0))
-        metres = METRES.get(str(length_unit).lower(), 1.0)
-        plates.append(
-            ForcePlate(
-                rate=about["analog_rate"],
-                force=arrays[f"plate{i}_force"],
-                moment=lever * arrays[f"plate{i}_moment"],
-                centre_of_pressure=metres * arrays[f"plate{i}_center_of_pressure"],
-                corners=metres * arrays[f"plate{i}_corners"],
-            )
-        )
-    return tuple(plates)
+def _rate(header: C3dHeader, parameters: C3dParameters, notes: list[str]) -> float:
+    stated = parameters.numbers("POINT", "RATE")
+    rates = [float(stated[0])] if stated is not None else []
+    usable = [rate for rate in (*rates, header.rate) if np.isfinite(rate) and rate > 0.0]
+    if len(usable) == 2 and abs(usable[0] - usable[1]) > 1e-3 * usable[0]:
+        notes.append(f"POINT:RATE is {usable[0]:g} Hz, the header says {usable[1]:g} Hz: the first is taken")
+    return usable[0] if usable else header.rate
+
+
+def _analog(
+    raw: Array, layout: FrameLayout, rate: float, parameters: C3dParameters, unsigned: bool
+) -> tuple[AnalogChannels | None, list[str]]:
+    """Return the analog channels, offset and scaled as the file states it, and notes."""
+    if not raw.size:
+        return None, []
+    count, notes = layout.channels, []
+    scale, offset = parameters.numbers("ANALOG", "SCALE"), parameters.numbers("ANALOG", "OFFSET")
+    if scale is None:
+        return None, ["ANALOG:SCALE is missing: what its channels mean is not known, they are left aside"]
+    if offset is None:
+        notes.append("ANALOG:OFFSET is missing: taken as 0")
+    offsets = _each(offset, count, 0.0)
+    if unsigned:
+        offsets = np.where(offsets < 0.0, offsets + 65536.0, offsets)
+    whole = parameters.numbers("ANALOG", "GEN_SCALE")
+    values = (raw - offsets) * _each(scale, count, 1.0) * (1.0 if whole is None else whole[0])
+    labels = parameters.texts("ANALOG", "LABELS")
+    labels = (labels + [f"channel {i + 1}" for i in range(len(labels), count)])[:count]
+    units = (parameters.texts("ANALOG", "UNITS") + [""] * count)[:count]
+    return AnalogChannels(layout.samples * rate, tuple(labels), tuple(units), values), notes
+
+
+def _each(values: Array | None, count: int, default: float) -> Array:
+    """Return one value for each channel; the last channels may have none."""
+    whole = np.full(count, default)
+    if values is not None:
+        whole[: len(values)] = values[:count]
+    return whole
+
+
+def _plates(
+    parameters: C3dParameters, analog: AnalogChannels | None, units: str
+) -> tuple[tuple[ForcePlate, ...], list[str]]:
+    if analog is None:
+        return (), []
+    try:
+        return force_plates(parameters, analog, units), []
+    except ValueError as error:
+        return (), [f"force plates are stated but could not be read: {error}"]

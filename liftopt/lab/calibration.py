@@ -27,6 +27,7 @@ else:
     import tomli as tomllib
 
 
+SCATTER = 0.05  # of a curve's range: the repeatability that data sheets of such sensors promise
 SMALLEST_STEP = 0.5 * 10.0**-DECIMALS  # V or N, between points of a curve
 
 
@@ -144,7 +145,7 @@ class Fit:
 
     Attributes:
         calibration: the result.
-        residual_rms, residual_max: by curve, of the single readings [N], within the curve's range.
+        residual_rms, residual_max: by curve, of every single reading [N], within the curve's range of loads.
         series: by curve, how many.
         notes: what was left out or smoothed.
     """
@@ -170,12 +171,19 @@ def calibrate(paths: Sequence[Path], divider: Divider) -> Fit:
     for channel, group in by_channel.items():
         mean = mean_series(group, divider)
         curve = Curve(voltage=tuple(mean.voltage.tolist()), force=tuple(mean.force.tolist()))
-        voltage, force = (np.concatenate([getattr(one, name) for one in group]) for name in ("voltage", "force"))
+        voltage, force = np.concatenate([one.single for one in group]).T
         within = (force >= curve.force[0]) & (force <= curve.force[-1])
         error = (curve.of(voltage) - force)[within]
         curves[channel] = curve
         rms[channel], largest[channel] = float(np.sqrt(np.mean(error**2))), float(np.abs(error).max())
         notes += [f"{channel}: {note}" for note in mean.notes]
+        if largest[channel] > SCATTER * curve.force[-1]:
+            worst = int(np.argmax(np.where(within, np.abs(curve.of(voltage) - force), 0.0)))
+            notes.append(
+                f"{channel}: single readings scatter: {voltage[worst]:.4g} V at {force[worst]:.3g} N would be read as "
+                f"{float(curve.of(voltage[worst])):.3g} N ({largest[channel] / curve.force[-1]:.0%} of the range off); "
+                "hysteresis, creep or a load that did not sit on the sensor"
+            )
     return Fit(
         Calibration(divider=divider, curves=curves),
         rms,

@@ -29,12 +29,20 @@ class Series:
         channel: of the sensor, ``all`` where none is named.
         voltage: (K,) output of the divider [V], each load once.
         force: (K,) loads [N], rising.
+        readings: (R, 2) every single voltage [V] and load [N], in the order they were taken; several may be of one
+            load, loaded up and unloaded again. None where there are no others.
     """
 
     source: str
     channel: str
     voltage: Array
     force: Array
+    readings: Array | None = None
+
+    @property
+    def single(self) -> Array:
+        """(R, 2) single readings: voltage [V] and load [N]."""
+        return np.stack([self.voltage, self.force], axis=1) if self.readings is None else self.readings
 
 
 @dataclass(frozen=True)
@@ -136,4 +144,4 @@ def _series(source: str, channel: str, voltage: Array, force: Array) -> Series:
     if len(loads) < 3:
         raise InputError(source, f"{len(loads)} different weights", "a series needs three or more")
     mean = np.bincount(where.ravel(), weights=voltage) / np.bincount(where.ravel())
-    return Series(source, channel, mean, loads)
+    return Series(source, channel, mean, loads, np.stack([voltage, force], axis=1))

@@ -26,6 +26,7 @@ from liftopt.lab.recording import Array
 from liftopt.lab.sensor_table import SIGNATURE, SensorTable, read_sensor_table
 from liftopt.lab.voltage_divider import VOLTAGE_UNITS
 
+Mark = tuple[str, int]
 SECONDS = {"s": 1.0, "ms": 1e-3}
 HAND = "hand"
 PRELOAD, TRIAL = "preload", "trial"
@@ -38,8 +39,9 @@ def read_forces(path: Path, calibration: Calibration | None = None, unloaded: fl
     """Return the trials of a recording, of ``liftopt record`` or another tool's.
 
     The header names the columns with their units: ``time [s or ms]``, then one for each sensor, finger... or thumb...,
-    as voltages [V, mV or counts] or as forces [N, kg or g]. A column ``mark`` holds "trial 1" or "preload 1"; a trial's
-    preload is the mean of the block marked last before it. A file without marks is one trial.
+    as voltages [V, mV or counts] or as forces [N, kg or g]. A column ``mark`` holds "trial 1" or "preload 1", or
+    nothing outside them; a trial's preload is the mean of the block marked last before it. Where no trial is marked,
+    the rows without a mark behind the last preload are one.
 
     Args:
         path: of the file.
@@ -60,11 +62,15 @@ def read_forces(path: Path, calibration: Calibration | None = None, unloaded: fl
         except InputError as error:
             raise table.header.error(name, error.allowed) from None
     force, flags = _forces(table, names, calibration)
-    marks = _marks(table)
+    marks, more = _marks(table)
     trials = []
     preload, taken = np.zeros(len(names)), ""
-    for mark in dict.fromkeys(marks):
-        rows = np.flatnonzero([one == mark for one in marks])
+    blocks: dict[Mark, list[int]] = {}
+    for row, mark in enumerate(marks):
+        if mark:
+            blocks.setdefault(mark, []).append(row)
+    for mark, block in blocks.items():
+        rows = np.array(block)
         if mark[0] == PRELOAD:
             preload, taken = _mean(table, names, force[rows], flags[rows]), f"{PRELOAD} {mark[1]}"
             continue
@@ -72,7 +78,7 @@ def read_forces(path: Path, calibration: Calibration | None = None, unloaded: fl
         if not taken and unloaded > 0.0:
             first = rows[time[rows] <= time[rows[0]] + unloaded]
             own, how = _mean(table, names, force[first], flags[first]), f"its first {unloaded:g} s"
-        notes = [*table.notes, *_notes(time[rows], names, flags[rows])]
+        notes = [*table.notes, *more, *_notes(time[rows], names, flags[rows])]
         notes += [f"preload from {how}" if how else "no preload was recorded: none subtracted"]
         trials.append(
             ForceRecord(
@@ -158,17 +164,26 @@ def _read_flags(table: SensorTable, names: tuple[str, ...], flags: Flags) -> Non
             flags[row, names.index(name)] |= bits[key]
 
 
-def _marks(table: SensorTable) -> list[tuple[str, int]]:
-    marks: list[tuple[str, int]] = []
+def _marks(table: SensorTable) -> tuple[list[Mark | None], list[str]]:
+    """Return the mark of each row, None where it belongs to no block, and notes."""
+    marks: list[Mark | None] = []
+    seen: set[Mark] = set()
     for row, text in enumerate(table.words.get("mark", (f"{TRIAL} 1",) * len(table.lines))):
         kind, _, number = text.lower().partition(" ")
-        if kind not in (PRELOAD, TRIAL) or not re.fullmatch(r"[0-9]{1,9}", number):
+        if text and (kind not in (PRELOAD, TRIAL) or not re.fullmatch(r"[0-9]{1,9}", number)):
             raise table.lines[row].error(text, f'the mark must be "{TRIAL} 1" or "{PRELOAD} 1", or another number')
-        mark = (kind, int(number))
-        if mark in marks and marks[-1] != mark:
+        mark = (kind, int(number)) if text else None
+        if mark and mark in seen and marks[-1] != mark:
             raise table.lines[row].error(text, "this mark stood further above already; a trial is one block of rows")
+        seen.update({mark} if mark else ())
         marks.append(mark)
-    return marks
+    between = marks.count(None)
+    if any(mark and mark[0] == TRIAL for mark in marks):
+        return marks, [f"{between} rows without a mark, outside preload and trials, are left aside"] if between else []
+    last = max((row for row, mark in enumerate(marks) if mark), default=-1)
+    whole: list[Mark | None] = [*marks[: last + 1], *[(TRIAL, 1)] * (len(marks) - last - 1)]
+    where = "behind the preload" if last >= 0 else "of the recording"
+    return whole, [f"no trial is marked: all {len(marks) - last - 1} rows {where} are taken as one"]
 
 
 def _mean(table: SensorTable, names: tuple[str, ...], force: Array, flags: Flags) -> Array:

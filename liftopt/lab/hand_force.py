@@ -54,7 +54,7 @@ def read_hand_force(path: Path, up: str) -> HandForce:
         table = read_motion_table(path)
         force = np.stack([table.column(name) for name in COLUMNS[1:]], axis=1)
         return _checked(HandForce(str(path), table.time, force))
-    lines = read_lines(path, "a CSV file")
+    lines, _ = read_lines(path, "a CSV file")
     if " ".join(lines[0].fields).startswith(SIGNATURE):
         return _of_sensors(path, up)
     at = next((i for i, line in enumerate(lines) if line.filled), None)

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.recording import METRES, TO_Z_UP, Recording
+from liftopt.lab.length_units import METRES
+from liftopt.lab.recording import TO_Z_UP, Recording
 from liftopt.lab.text_file import read_text
 from liftopt.scenario_schema import Choice, Kind, Number, entries, section
 
@@ -105,7 +106,7 @@ class MarkerMap:
 
     schema: Annotated[int, Choice("version of the mapping format", (1,))]
     up: Annotated[str, Choice("axis of the recording that points up", tuple(TO_Z_UP))]
-    units: Annotated[str, Choice("unit of length of files that state none", (*METRES, ""))] = ""
+    units: Annotated[str, Choice("unit of length of the file, whatever the file states", (*METRES, ""))] = ""
     landmarks: Landmarks
     segments: Segments = field(default_factory=Segments)
     subject: Person = field(default_factory=Person)

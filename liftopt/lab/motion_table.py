@@ -56,7 +56,7 @@ def read_motion_table(path: Path) -> MotionTable:
         InputError: the file cannot be read or is not laid out so, a name stands twice, or time does not increase; the
             message names the line.
     """
-    lines, source = read_lines(path, WHAT), str(path)
+    (lines, notes), source = read_lines(path, WHAT), str(path)
     end = next((i for i, line in enumerate(lines) if line.fields[:1] == ("endheader",)), None)
     if end is None or end + 1 >= len(lines):
         raise InputError(source, NO_VALUE, f"has no line endheader with columns after it, so it is not {WHAT}")
@@ -71,10 +71,10 @@ def read_motion_table(path: Path) -> MotionTable:
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise lines[at].error(twice[0], "the name stands over two columns")
-    table, used, notes = number_table(lines[at + 1 :], names)
+    table, used, more = number_table(lines[at + 1 :], names)
     if not len(table):
         raise InputError(source, NO_VALUE, "holds no rows")
-    notes += contradictions(header, {"nrows": len(table), "ncolumns": len(names)})
+    notes += more + contradictions(header, {"nrows": len(table), "ncolumns": len(names)})
     time = table[:, 0]
     check_rising(time, used)
     degrees = {"yes": True, "no": False}.get(header.get("indegrees", "").lower())

@@ -28,8 +28,8 @@ def add_record_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
         "record",
         help="record force sensors from an Arduino, live in the browser",
         description="Read force sensors from an Arduino that prints a line per sample, one number for each channel, "
-        "separated by commas. The page has buttons to take the preload and to start and stop trials; every line is on "
-        "the disk before the next is read. Ctrl-C ends it.",
+        "separated by commas; its clock (millis) may stand before them. The page has buttons to take the preload and "
+        "to start and stop trials; every line, marked or not, is on the disk before the next is read. Ctrl-C ends it.",
         allow_abbrev=False,
     )
     parser.add_argument("--port", required=True, metavar="PORT", help="serial port, such as /dev/ttyACM0")
@@ -176,6 +176,7 @@ def _serve(session: RecordSession, browser: bool, say: Callable[[str], None]) ->
         try:
             with suppress(KeyboardInterrupt):
                 say(f"Recording at {server.url} (Ctrl-C ends it)")
+                say("Every line is kept. The page's buttons mark preload and trials.")
                 if browser and not opened(server.url):
                     say("No browser could be opened here: open this address in one.")
                 server.serve_forever(poll_interval=0.2)

@@ -14,14 +14,15 @@ from liftopt.lab.force_file import KEYS, PRELOAD, TRIAL
 from liftopt.lab.force_record import hand_force, sensor_forces
 from liftopt.lab.record_log import RecordLog
 from liftopt.lab.recording import Array
-from liftopt.lab.serial_device import Connection, Garbage, Reading, SerialDevice
+from liftopt.lab.sensor_lines import Aside, Connection, Garbage, Reading
+from liftopt.lab.serial_device import SerialDevice
 
 PRELOAD_READINGS = 10  # about 3 s at the rate of the paper's Arduino
 SHOWN = 2000  # readings kept for the page, 10 minutes at that rate
 
 
 class RecordSession:
-    """Takes readings from a device, writes those of a trial or a preload, and keeps the latest for the page.
+    """Takes readings from a device, writes every one, marked or not, and keeps the latest for the page.
 
     Args:
         device: the source of readings.
@@ -41,7 +42,8 @@ class RecordSession:
     ) -> None:
         self.device, self.log, self.channels, self.unit = device, log, tuple(channels), unit
         self.calibration = calibration
-        self.garbage = self.losses = self.trials = self.preloads = 0
+        self.garbage = self.losses = self.trials = self.preloads = self.marked = 0
+        self._has_clock = False
         self._start = device.clock()
         self._lock = threading.Lock()
         self._mark, self._connected = "", True
@@ -56,7 +58,12 @@ class RecordSession:
             with self._lock:
                 at = event.time - self._start
                 if isinstance(event, Reading):
+                    if event.stamp is not None and not self._has_clock:
+                        self._has_clock = True
+                        self.log.remark(at, f"lines start with the device's clock, left out below; here: {event.stamp}")
                     self._take(at, event.values)
+                elif isinstance(event, Aside):
+                    self.log.remark(at, f"this line {event.reason}: {event.text}")
                 elif isinstance(event, Garbage):
                     self.garbage += 1
                     self.log.remark(at, f"not understood: {event.text}")
@@ -109,6 +116,7 @@ class RecordSession:
                 "preloads": self.preloads,
                 "preload": self._preload.tolist(),
                 "rows": self.log.rows,
+                "marked": self.marked,
                 "garbage": self.garbage,
                 "losses": self.losses,
                 "problem": self.log.problem,
@@ -116,15 +124,24 @@ class RecordSession:
             }
 
     def summary(self) -> str:
-        """Return in one line what was recorded."""
-        return (
-            f"Written to {self.log.path}: {self.log.rows} readings; trials: {self.trials}, preloads: {self.preloads}, "
-            f"lines not understood: {self.garbage}, connections lost: {self.losses}"
-        )
+        """Return what was recorded, and a warning where no trial was marked or no line was understood."""
+        lines = [
+            f"Written to {self.log.path}: {self.log.rows} readings ({self.marked} of them marked); trials: "
+            f"{self.trials}, preloads: {self.preloads}, lines not understood: {self.garbage}, connections lost: "
+            f"{self.losses}"
+        ]
+        if not self.log.rows:
+            lines.append(f"WARNING: NO READING WAS UNDERSTOOD; a line must hold {len(self.channels)} numbers")
+        elif not self.trials:
+            lines.append(
+                "WARNING: NO TRIAL WAS MARKED. Every line is in the file; liftopt forces takes those without a mark "
+                "as one trial"
+            )
+        return "\n".join(lines)
 
     def _take(self, at: float, values: tuple[float, ...]) -> None:
-        if self._mark:
-            self.log.row(at, self._mark, values)
+        self.log.row(at, self._mark, values)
+        self.marked += bool(self._mark)
         self._count += 1
         sample: dict[str, Any] = {"number": self._count, "time": at, "mark": self._mark, "values": values}
         if self.calibration is not None:

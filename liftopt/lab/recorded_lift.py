@@ -156,6 +156,9 @@ def recorded_lift(
     found = skeleton(smooth, mapping)
     scaled = scale_subject(found, mapping)
     person = recorded_person(smooth, found, scaled)
+    # What may be refused comes before the motion is followed, which takes longest.
+    held, lost = _object(smooth, mapping, person, needed=load is not None and load.mass > 0.0)
+    force, force_from = _force(smooth.time, mapping, person, held, load or Load())
     agent, limits = person.agent, person.agent.limits
     motion = track(
         agent.model,
@@ -166,8 +169,6 @@ def recorded_lift(
         start=np.zeros(agent.model.nq),
     )
     q, v, a = _motion(smooth.time, motion.q, smooth.rate, cutoff, limits.q_lower, limits.q_upper)
-    held, lost = _object(smooth, mapping, person, needed=load is not None and load.mass > 0.0)
-    force, force_from = _force(smooth.time, mapping, person, held, load or Load())
     trajectory = agent_trajectory(agent, q, v, a, force)
     notes = [*smooth.notes, *lost, *findings(unused, recording, found, scaled, motion, trajectory.joint_names)]
     off = np.degrees(-q[:, trajectory.joint_names.index("human_Q7")] - found.elbow_flexion)

@@ -9,11 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.lab.length_units import METRES, metres_of
 
 Array = npt.NDArray[np.float64]
 
-METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "meters": 1.0, "metres": 1.0, "millimeters": 0.001}
 LARGEST_ROOM = 1000.0  # m
+SENTINEL = 1e15  # beyond any place in any unit: NDI systems write -3.697314e28 for a marker that was not seen
+# From the middle of all markers to one of them, in the median: 0.3 to 0.6 m on a person. Ten times as much or a tenth
+# is another unit.
+SMALLEST_CLOUD, LARGEST_CLOUD = 0.1, 1.5  # m
 # R_world_file for each axis of the file that may point up: a right-handed turn that brings it to Z. The rest of the
 # heading is found from the pelvis.
 TO_Z_UP: dict[str, Array] = {
@@ -116,8 +120,8 @@ class Recording:
 def checked_recording(recording: Recording) -> Recording:
     """Return a recording fresh from a file with what exporters write for "not seen" turned into NaN, and noted.
 
-    Points at exactly (0, 0, 0) and points with one coordinate missing count as not seen; of channels with the same
-    label and the same data one is kept.
+    Points at exactly (0, 0, 0), points with one coordinate missing and points further away than anything is count as
+    not seen; of channels with the same label and the same data one is kept.
 
     Raises:
         InputError: no frames, no markers, no usable frame rate, or no marker was ever seen.
@@ -133,14 +137,20 @@ def checked_recording(recording: Recording) -> Recording:
     points, notes = recording.points.copy(), list(recording.notes)
     blank = [i for i, label in enumerate(recording.labels) if not label]
     if blank:
-        notes.append(f"{len(blank)} markers have no label")
+        which = ", ".join(f"*{i + 1}" for i in blank[:3]) + (", ..." if len(blank) > 3 else "")
+        notes.append(f"{len(blank)} markers have no label: {which} by their channel")
         labels = tuple(label or f"*{i + 1}" for i, label in enumerate(recording.labels))
         recording = replace(recording, labels=labels)
     zeros = np.all(points == 0.0, axis=2)
     points[zeros] = np.nan
     for channel in np.flatnonzero(zeros.any(axis=0)):
         notes.append(f"{recording.labels[channel]}: {zeros[:, channel].sum()} points at the origin taken as not seen")
-    points[~np.isfinite(points).all(axis=2)] = np.nan
+    beyond = np.any(np.abs(points) > SENTINEL, axis=2)  # infinite ones too
+    for channel in np.flatnonzero(beyond.any(axis=0)):
+        rows = points[:, channel]
+        value = rows[np.abs(rows) > SENTINEL][0]
+        notes.append(f"{recording.labels[channel]}: {beyond[:, channel].sum()} points at {value:.7g} taken as not seen")
+    points[beyond | ~np.isfinite(points).all(axis=2)] = np.nan
     if np.isnan(points).all():
         raise InputError(source, NO_VALUE, "no marker was seen in any frame")
     recording = replace(recording, points=points, notes=tuple(notes))
@@ -166,33 +176,24 @@ def _without_twins(recording: Recording) -> Recording:
 def in_metres(recording: Recording, units: str | None, up: str) -> Recording:
     """Return the recording in metres and with Z up.
 
+    The mapping's unit wins over that of the file, which may be misspelt or wrong; that is noted.
+
     Args:
         recording: as read.
         units: of the file according to the mapping, None to take what the file states.
         up: axis of the file that points up according to the mapping, a key of ``TO_Z_UP``.
 
     Raises:
-        InputError: units are unknown, or those of file and mapping contradict each other.
+        InputError: the unit is not known or cannot be right: the markers would lie too close together, or too far
+            apart, to be on a person.
     """
-    stated = recording.units
-    if stated and stated.lower() not in METRES:
-        raise InputError(recording.source, stated, f"is a unit of length that is not known; {', '.join(METRES)} are")
-    if stated and units and METRES[stated.lower()] != METRES[units]:
-        raise InputError("units", units, f"contradicts {recording.source}, which states {stated}")
-    name = (stated or units or "").lower()
-    if not name:
-        allowed = '"m", "cm" or "mm"'
-        raise InputError("units", NO_VALUE, f"{recording.source} states no unit of length; the mapping must: {allowed}")
     notes = list(recording.notes)
-    if (
-        recording.up and recording.up != up
-    ):  # exporters fill it in carelessly; whether the person stands is checked later
+    scale = _scale(recording, units, notes)
+    if recording.up and recording.up != up:
+        # Exporters fill it in carelessly; whether the person stands is checked later.
         notes.append(f"the file's vertical screen axis is {recording.up}, the mapping says that {up} points up")
-    scale, turn = METRES[name], TO_Z_UP[up]
-    if (extent := float(np.nanmax(np.abs(recording.points))) * scale) > LARGEST_ROOM:
-        raise InputError(
-            recording.source, NO_VALUE, f"places a marker {extent:.3g} m from its origin; are units right?"
-        )
+    turn = TO_Z_UP[up]
+    _check_size(recording, scale, units)
     plates = tuple(
         replace(
             plate,
@@ -206,3 +207,53 @@ def in_metres(recording: Recording, units: str | None, up: str) -> Recording:
     return replace(
         recording, points=scale * recording.points @ turn.T, units="m", up="Z", plates=plates, notes=tuple(notes)
     )
+
+
+def _scale(recording: Recording, units: str | None, notes: list[str]) -> float:
+    """Return the length of the unit [m]; note where mapping and file differ."""
+    stated = recording.units
+    of_file = metres_of(stated) if stated else None
+    if units:
+        scale = METRES[units]
+        if stated and of_file != scale:
+            notes.append(f"the file states {stated!r} as its unit of length; {units} is taken, as the mapping says")
+        return scale
+    if not stated:
+        allowed = '"m", "cm" or "mm"'
+        raise InputError("units", NO_VALUE, f"{recording.source} states no unit of length; the mapping must: {allowed}")
+    if of_file is None:
+        allowed = f'{", ".join(METRES)} are; the mapping may state the right one (units = "mm") and wins'
+        raise InputError(recording.source, stated, f"is a unit of length that is not known; {allowed}")
+    return of_file
+
+
+def _check_size(recording: Recording, scale: float, units: str | None) -> None:
+    seen = recording.points[~np.isnan(recording.points).all(axis=(1, 2))]
+    if not len(seen):
+        return  # whatever needs a marker names it
+    seen = seen[:: max(len(seen) // 200, 1)]
+    typical = float(np.nanmedian(np.linalg.norm(seen - np.nanmedian(seen, axis=1, keepdims=True), axis=2)))
+    key, value = ("units", units) if units else (recording.source, recording.units)
+    if not SMALLEST_CLOUD <= typical * scale <= LARGEST_CLOUD:
+        fitting = [name for name in ("m", "cm", "mm") if SMALLEST_CLOUD <= typical * METRES[name] <= LARGEST_CLOUD]
+        remedy = ""
+        if fitting:
+            remedy = f'; the mapping\'s units = "{fitting[0]}" would make it {typical * METRES[fitting[0]]:.2f} m'
+        raise InputError(
+            key,
+            value,
+            f"cannot be the unit of length: half of the markers would lie within {_length(typical * scale)} of their "
+            f"middle{remedy}",
+        )
+    extent = float(np.nanmax(np.abs(recording.points))) * scale
+    if extent > LARGEST_ROOM:
+        frame, marker, _ = np.unravel_index(int(np.nanargmax(np.abs(recording.points))), recording.points.shape)
+        raise InputError(
+            recording.source,
+            NO_VALUE,
+            f"places {recording.labels[int(marker)]} {extent:.3g} m from its origin in frame {frame}; is that a place?",
+        )
+
+
+def _length(metres: float) -> str:
+    return f"{1000.0 * metres:.3g} mm" if metres < 1.0 else f"{metres:.3g} m"

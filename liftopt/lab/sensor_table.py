@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import csv
 import re
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.recording import Array
-from liftopt.lab.text_file import Line, read_text
+from liftopt.lab.text_file import Line, check_decimals, text_lines
 
 WORDS = ("mark", "series", "channel", "flags")  # columns of words; all others hold numbers and state their unit
 SIGNATURE = "# liftopt"  # first words of the files that liftopt writes: every line of theirs ends with a newline
@@ -58,6 +60,8 @@ class SensorTable:
 def read_sensor_table(path: Path, what: str) -> SensorTable:
     """Return the table of a CSV file: fields separated by commas, semicolons or tabs, columns named ``name [unit]``.
 
+    Decimal commas are read where semicolons or tabs separate the fields.
+
     Args:
         path: of the file.
         what: the kind of file expected (``"a recording of forces"``), for messages.
@@ -66,9 +70,8 @@ def read_sensor_table(path: Path, what: str) -> SensorTable:
         InputError: the file cannot be read, states no units, or a field is wrong; the message names the line.
     """
     source = str(path)
-    text = read_text(path, what).decode("utf-8-sig", errors="replace")
-    split = re.split(r"\r\n|\n|\r", text)
-    ours, notes = text.startswith(SIGNATURE), []
+    split, notes = text_lines(path, what)
+    ours = split[0].startswith(SIGNATURE)
     if ours and split[-1]:
         # Its fields may be all there and the last number still short of digits.
         notes.append(f"line {len(split)} was cut off while it was written: left out")
@@ -77,17 +80,24 @@ def read_sensor_table(path: Path, what: str) -> SensorTable:
     if not data:
         raise InputError(source, NO_VALUE, f"holds no rows; expected {what}")
     delimiter = next((mark for mark in "\t;," if mark in data[0][1]), ",")
-    lines = [Line(source, i, tuple(field.strip().strip('"') for field in line.split(delimiter))) for i, line in data]
-    header, rows = lines[0], lines[1:]
+    lines = [Line(source, i, _fields(line, delimiter)) for i, line in data]
+    header, rows = replace(lines[0], fields=lines[0].filled), lines[1:]
     names, units = _header(header)
     count = len(names)
     if rows and len(rows[-1].fields) < count and not ours:
         notes.append(f"line {rows[-1].number} ends after {len(rows[-1].fields)} of {count} fields: left out")
         rows = rows[:-1]
+    # A separator behind the last value, as sketches and spreadsheets write it, starts no column.
+    rows = [
+        replace(line, fields=line.fields[:count]) if len(line.filled) <= count < len(line.fields) else line
+        for line in rows
+    ]
     for line in rows:
         if len(line.fields) != count:
-            raise line.error(f"{len(line.fields)} fields", f"the header names {count} columns")
+            hint = "; where commas are decimal, semicolons must separate the fields" if delimiter == "," else ""
+            raise line.error(f"{len(line.fields)} fields", f"the header names {count} columns{hint}")
     numbers = [i for i in range(count) if names[i] not in WORDS]
+    check_decimals(rows, numbers)
     values = [[_number(line, i, names[i]) for i in numbers] for line in rows]
     return SensorTable(
         source=source,
@@ -115,6 +125,14 @@ def _header(line: Line) -> tuple[list[str], list[str]]:
         names.append(name)
         units.append(unit)
     return names, units
+
+
+def _fields(line: str, delimiter: str) -> tuple[str, ...]:
+    fields = line.split(delimiter)
+    if '"' in line:  # a spreadsheet with decimal commas quotes its numbers where commas separate them too
+        with suppress(csv.Error):
+            fields = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), fields)
+    return tuple([field.strip().strip('"') for field in fields])
 
 
 def _number(line: Line, column: int, name: str) -> float:

@@ -1,67 +1,32 @@
-"""Lines of numbers from an Arduino on a serial port, through garbage, disconnections and reconnections."""
+"""A port on which an Arduino prints lines of numbers, through garbage, disconnections and reconnections."""
 
 from __future__ import annotations
 
 import errno
-import re
 import termios
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
 from liftopt.errors import InputError
 from liftopt.lab.extra import load_extra
+from liftopt.lab.sensor_lines import CUT, Aside, Connection, Event, Garbage, SensorLines, shown
 
 LONGEST_LINE = 1000  # bytes without a newline: another baud rate, or another device
 WAIT = 0.1  # s between looks at the stop signal
 RETRY = 0.5  # s between attempts to connect again
 
 
-@dataclass(frozen=True)
-class Reading:
-    """One complete line: its arrival on the clock [s] and a value for each channel, in the device's unit."""
-
-    time: float
-    values: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Garbage:
-    """A line that is no reading, as it arrived."""
-
-    time: float
-    text: str
-
-
-@dataclass(frozen=True)
-class Connection:
-    """The port was lost, or was found again.
-
-    Attributes:
-        time: on the clock [s].
-        up: the port is open.
-        reason: of the loss.
-    """
-
-    time: float
-    up: bool
-    reason: str = ""
-
-
-Event = Reading | Garbage | Connection
-
-
 class SerialDevice:
-    """A device that sends one line per sample: a number for each channel, separated by commas, semicolons or blanks.
+    """A device that sends one line per sample, as ``SensorLines`` reads it.
 
     Args:
         port: of the device, such as /dev/ttyACM0; better its name under /dev/serial/by-id, which stays.
         channels: numbers in a line.
-        largest: reading that can be meant, in the device's unit; what lies beyond lost a character on its way.
+        largest: reading that can be meant, in the device's unit.
         baud: bits per second.
         clock: gives the time of arrival [s].
 
@@ -82,7 +47,7 @@ class SerialDevice:
     def events(self, stop: threading.Event) -> Iterator[Event]:
         """Yield what happens until ``stop`` is set, then close the port.
 
-        The first line after a connection is left out: it may have begun before.
+        The first line after a connection is no reading: it may have begun before.
         """
         try:
             while not stop.is_set():
@@ -103,27 +68,31 @@ class SerialDevice:
                 serial.close()
 
     def _read(self, stop: threading.Event) -> Iterator[Event]:
-        buffer, first = b"", True
+        buffer, first, sensors = b"", True, SensorLines(self.channels, self.largest)
         while not stop.is_set():
             try:
                 buffer += self._serial.read(max(1, self._serial.in_waiting))
             except (OSError, termios.error) as error:
                 self.close()
+                yield from sensors.end()
                 if buffer:
-                    yield Garbage(self.clock(), _shown(buffer))
+                    yield Garbage(self.clock(), shown(buffer))
                 yield Connection(self.clock(), False, " ".join(str(error).split()))
                 return
             *lines, buffer = buffer.split(b"\n")
             now = self.clock()
             for line in lines:
-                if first or not line.strip():
-                    first = False
+                cut, first = first, False
+                if not line.strip():
                     continue
-                values = parse_line(line, self.channels, self.largest)
-                yield Garbage(now, _shown(line)) if values is None else Reading(now, values)
+                if cut:
+                    yield Aside(now, shown(line), CUT)
+                else:
+                    yield from sensors.take(now, line)
             if len(buffer) > LONGEST_LINE:
-                yield Garbage(now, _shown(buffer))
+                yield Garbage(now, shown(buffer))
                 buffer, first = b"", True
+        yield from sensors.end()
 
     def _open(self) -> Any:
         return self._module.Serial(self.port, self.baud, timeout=WAIT, exclusive=True)
@@ -149,18 +118,3 @@ class SerialDevice:
         if number in (errno.EAGAIN, errno.EWOULDBLOCK):
             return "is in use by another program"
         return f"cannot be opened: {' '.join(str(error).split())}"
-
-
-def parse_line(line: bytes, channels: int, largest: float) -> tuple[float, ...] | None:
-    """Return the numbers of a line, or None if it is not exactly one sensible number for each channel."""
-    fields = re.split(rb"[,;\s]+", line.strip())
-    if len(fields) != channels or not all(re.fullmatch(rb"[+-]?(\d+\.?\d*|\.\d+)", field) for field in fields):
-        return None
-    values = tuple(float(field) for field in fields)
-    # A converter's noise may dip below zero a little, and its reference may be a little below the supply.
-    return values if all(-0.05 * largest <= value <= 1.05 * largest for value in values) else None
-
-
-def _shown(line: bytes) -> str:
-    text = line.strip().decode("ascii", errors="backslashreplace")
-    return repr(text if len(text) <= 120 else text[:117] + "...")

@@ -14,8 +14,6 @@ from liftopt.lab.motion_table import read_motion_table
 from liftopt.lab.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
 from liftopt.lab.recorded_scenario import recorded_scenario
 
-pytest.importorskip("ezc3d", reason="ezc3d is not installed (it is in the extra 'lab')")
-
 
 @pytest.fixture(scope="module")
 def recorded(box_lift: Path) -> RecordedLift:

@@ -33,7 +33,7 @@ def test_a_mapping_file(truth: Any, tmp_path: Path) -> None:
     ("section", "key", "value", "match"),
     [
         (None, "up", "up", "up = 'up': must be"),
-        (None, "units", "ft", "units = 'ft'"),
+        (None, "units", "ell", "units = 'ell'"),
         (None, "schema", 2, "schema = 2"),
         (None, "unit", "mm", "unit = 'mm': unknown key; did you mean units"),
         ("landmarks", "c7", None, "landmarks.c7: is missing"),

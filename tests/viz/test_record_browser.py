@@ -112,7 +112,7 @@ def test_channels_and_the_hands_force_are_shown_live(laboratory: Laboratory) -> 
     assert rows[0].split() == ["finger1", "1.000", "V", "2.00", "N"]
     assert rows[5].split() == ["thumb2", "5.000", "V", "8.00", "N", "saturated/beyond"]
     assert laboratory.opened.run("document.getElementById('hand').className") == "flag"
-    assert laboratory.text("#state") == "not recording"
+    assert laboratory.text("#state") == "no trial marked"
     address = laboratory.opened.page.url
     assert all(url.startswith((address, "data:")) for url in laboratory.opened.requests)
     assert laboratory.opened.complaints == []
@@ -125,15 +125,15 @@ def test_the_buttons_take_the_preload_and_record_a_trial(laboratory: Laboratory)
     assert page.is_disabled("#start")
     for _ in range(PRELOAD_READINGS):
         laboratory.print_line("0.1,0.1,0.1,0.1,0.2,0.2")
-    page.wait_for_function("liftopt.state.mark === '' && liftopt.state.rows > 0")
+    page.wait_for_function("liftopt.state.mark === '' && liftopt.state.marked > 0")
     laboratory.press("start", "recording trial 1")
     assert page.is_disabled("#start")
     assert page.is_disabled("#preload")
     laboratory.read("1.1,1.1,1.1,1.1,0.7,0.7")
     assert laboratory.text("#hand") == "6.00 N"
-    laboratory.press("stop", "not recording")
+    laboratory.press("stop", "no trial marked")
     assert page.is_disabled("#stop")
-    assert "11 readings written, trials: 1, preload 1 subtracted" in laboratory.text("#facts")
+    assert "12 readings written (11 marked), trials: 1, preload 1 subtracted" in laboratory.text("#facts")
     (trial,) = read_forces(laboratory.file, CALIBRATION)
     assert trial.hand_force.tolist() == pytest.approx([6.0])
     assert laboratory.opened.complaints == []

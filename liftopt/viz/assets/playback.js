@@ -120,7 +120,7 @@
     data.lifts.forEach((lift, i) => add(line, "td", "", `${key}-${i}`));
   }
   Object.keys(data.lifts[0].force).forEach((who) => row(colours[who], `force of the ${who}`, `force-${who}`));
-  row(colours.table, "height of the table", "height");
+  row(colours.table, "height of the table's centre", "height");
   data.lifts.filter((lift) => !lift.solved).forEach((lift) => {
     add(element("facts"), "p", `${lift.name} is not a verified solution: ${lift.status}`).className = "bad";
   });

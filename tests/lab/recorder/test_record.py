@@ -77,21 +77,21 @@ def served(arduino: Any, path: Path, calibration: Calibration | None = CALIBRATI
             log.close()
 
 
-def test_preload_start_and_stop_decide_what_is_written(arduino: Any, tmp_path: Path) -> None:
+def test_every_line_is_written_and_the_buttons_decide_what_is_marked(arduino: Any, tmp_path: Path) -> None:
     path = tmp_path / "r.csv"
     with served(arduino, path) as url:
         arduino.send("half\n3,3,3\n")
-        assert wait(url, lambda live: live["samples"])["rows"] == 0
+        assert wait(url, lambda live: live["samples"])["rows"] == 1
         assert ask(url, "/preload", "POST") == (200, {"refusal": ""})
         status, answer = ask(url, "/start", "POST")
         assert (status, answer["refusal"]) == (409, "preload 1 is being recorded: stop it first")
         arduino.send("0.1,0.2,0.0\n" * PRELOAD_READINGS + "4,4,4\n")
         live = wait(url, lambda live: len(live["samples"]) == PRELOAD_READINGS + 2)
-        assert (live["mark"], live["rows"]) == ("", PRELOAD_READINGS)
+        assert (live["mark"], live["rows"], live["marked"]) == ("", PRELOAD_READINGS + 2, PRELOAD_READINGS)
         np.testing.assert_allclose(live["preload"], [0.2, 0.4, 0.0])
         assert ask(url, "/start", "POST")[0] == 200
         arduino.send("1.1,1.2,0.5\nwhat?\n1.1,1.2,5.0\n")
-        live = wait(url, lambda live: live["rows"] == PRELOAD_READINGS + 2)
+        live = wait(url, lambda live: live["rows"] == PRELOAD_READINGS + 4)
         sample, last = live["samples"][-2:]
         np.testing.assert_allclose(sample["force"], [2.0, 2.0, 1.0])
         assert sample["hand"] == pytest.approx(3.0)
@@ -103,7 +103,10 @@ def test_preload_start_and_stop_decide_what_is_written(arduino: Any, tmp_path: P
     (trial,) = read_forces(path, CALIBRATION)
     np.testing.assert_allclose(trial.force[0], [2.0, 2.0, 1.0], atol=1e-9)
     np.testing.assert_allclose(trial.hand_force[0], 3.0, atol=1e-9)
+    assert any("2 rows without a mark, outside preload and trials, are left aside" in note for note in trial.notes)
     text = path.read_text()
+    assert "this line may have begun before the connection did: 'half'" in text
+    assert re.search(r"^\d+\.\d{4},,3,3,3$", text, flags=re.MULTILINE)
     assert "not understood: 'what?'" in text
     assert re.search(r"^# time 0 is 20\d\d-\d\d-\d\dT[\d:.]+[+-]\d\d:\d\d$", text, flags=re.MULTILINE)
 
@@ -266,11 +269,42 @@ def test_ctrl_c_ends_it_and_says_what_was_recorded(arduino: Any, tmp_path: Path)
         assert running.stdout is not None
         said = running.stdout.read()
         assert running.wait(PATIENCE) == 0
-    assert "1 readings; trials: 1, preloads: 0, lines not understood: 0, connections lost: 0" in said
+    assert "1 readings (1 of them marked); trials: 1, preloads: 0, lines not understood: 0, connections lost: 0" in said
     assert "\n0" not in said
+    assert "WARNING" not in said
     assert "finger2 [counts]" in path.read_text()
     assert path.read_text().endswith("trial 1 ends\n")
     assert read_forces(path, CALIBRATION)[0].flags[0, 2] != 0
+
+
+@pytest.mark.parametrize("line", ["0.{:02d},0.2,0.1", "{1},0.{0:02d},0.2,0.1", "0.{:02d},0.2,0.1,"])
+def test_nothing_is_lost_where_nobody_marks_a_trial(line: str, arduino: Any, tmp_path: Path) -> None:
+    """Values alone, with millis before them and with a comma behind; the oracle is what the device printed."""
+    path, count = tmp_path / "r.csv", 30
+    with command(arduino, "--out", str(path)) as (running, url):
+        arduino.send("cut off\n" + "".join(line.format(k, 50 * k) + "\r\n" for k in range(count)))
+        wait(url, lambda live: live["rows"] == count)
+        running.send_signal(signal.SIGINT)
+        assert running.stdout is not None
+        said = running.stdout.read()
+        assert running.wait(PATIENCE) == 0
+    assert "30 readings (0 of them marked); trials: 0, preloads: 0, lines not understood: 0" in said
+    assert "WARNING: NO TRIAL WAS MARKED" in said
+    (trial,) = read_forces(path, CALIBRATION)
+    np.testing.assert_allclose(trial.force[:, 0], 2.0 * 0.01 * np.arange(count), atol=1e-12)
+    np.testing.assert_allclose(trial.force[:, 1:], np.tile([0.4, 0.2], (count, 1)), atol=1e-12)
+    assert trial.notes[0] == "no trial is marked: all 30 rows of the recording are taken as one"
+
+
+def test_a_recording_of_which_nothing_was_understood_says_so(arduino: Any, tmp_path: Path) -> None:
+    path = tmp_path / "r.csv"
+    with command(arduino, "--out", str(path)) as (running, url):
+        arduino.send("cut off\n1,2\n3,4,5,6,7\n")
+        wait(url, lambda live: live["garbage"] == 2)
+        running.send_signal(signal.SIGINT)
+        assert running.stdout is not None
+        assert "WARNING: NO READING WAS UNDERSTOOD; a line must hold 3 numbers" in running.stdout.read()
+    assert "not understood: '1,2'" in path.read_text()
 
 
 @pytest.mark.parametrize(

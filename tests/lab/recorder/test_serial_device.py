@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -10,7 +11,9 @@ from typing import Any
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.serial_device import Connection, Event, Garbage, Reading, SerialDevice, parse_line
+from liftopt.lab.extra import load_extra
+from liftopt.lab.sensor_lines import Aside, Connection, Event, Garbage, Reading, SensorLines, parse_line
+from liftopt.lab.serial_device import SerialDevice
 
 
 @pytest.fixture
@@ -21,7 +24,7 @@ def device(arduino: Any) -> SerialDevice:
 @pytest.fixture
 def events(device: SerialDevice) -> Iterator[Iterator[Event]]:
     stop = threading.Event()
-    running = device.events(stop)
+    running = (event for event in device.events(stop) if not isinstance(event, Aside))
     yield running
     stop.set()
     assert not [event for event in running if isinstance(event, Reading)]
@@ -96,18 +99,61 @@ def test_a_port_that_is_not_there_or_is_taken_is_named(arduino: Any, device: Ser
 
 
 @pytest.mark.parametrize(
-    ("line", "values"),
+    ("line", "found"),
     [
-        (b" 1 2\t3\r", (1.0, 2.0, 3.0)),
-        (b".5,-0.01,5.2", (0.5, -0.01, 5.2)),
+        (b" 1 2\t3\r", ((1.0, 2.0, 3.0), None)),
+        (b".5,-0.01,5.2", ((0.5, -0.01, 5.2), None)),
+        (b"1,2,3,", ((1.0, 2.0, 3.0), None)),
+        (b"1; 2; 3;\r", ((1.0, 2.0, 3.0), None)),
+        (b"1250,1,2,3", ((1.0, 2.0, 3.0), 1250)),
+        (b"1250 1 2 3 ", ((1.0, 2.0, 3.0), 1250)),
+        (b"1250,1,2,3,", ((1.0, 2.0, 3.0), 1250)),
+        (b"12.5,1,2,3", None),  # a clock shows whole numbers
+        (b"1,2,", None),
+        (b"1,,2,3", None),
+        (b"1,2,3,,", None),
         (b"1e0,2,3", None),
         (b"1,2,inf", None),
         (b"1_0,2,3", None),
         (b"1,2,5.3", None),
         (b"1,2,-0.3", None),
         (b"", None),
+        (b",", None),
         (b"\xd9\xa1,2,3", None),  # a digit, but none of a converter's
     ],
 )
-def test_a_line_is_a_sensible_number_for_each_channel(line: bytes, values: tuple[float, ...] | None) -> None:
-    assert parse_line(line, 3, 5.0) == values
+def test_a_line_is_a_sensible_number_for_each_channel(line: bytes, found: Any) -> None:
+    assert parse_line(line, 3, 5.0) == found
+
+
+def _read(lines: list[str], largest: float) -> list[Event]:
+    sensors = SensorLines(2, largest)
+    events = [event for k, line in enumerate(lines) for event in sensors.take(0.05 * k, line.encode())]
+    return [event for event in [*events, *sensors.end()] if not isinstance(event, Aside)]
+
+
+def test_a_clock_is_believed_once_no_channel_could_show_it_and_nothing_before_is_lost() -> None:
+    """Counts up to 1023: millis of the first second could be a channel's."""
+    events = _read([f"{50 * k},{k},7" for k in range(40)], 1023.0)
+    assert events == [Reading(0.05 * k, (float(k), 7.0), 50 * k) for k in range(40)]
+
+
+def test_a_channel_too_many_is_not_taken_for_a_clock() -> None:
+    """A third sensor that rises and falls: leaving it out would shift nothing, but it was never named."""
+    events = _read([f"{500 + 20 * (k % 20)},{k},7" for k in range(40)], 1023.0)
+    assert len(events) == 40
+    assert all(isinstance(event, Garbage) for event in events)
+
+
+def test_a_line_that_lost_its_clock_is_no_reading() -> None:
+    """Else what is left of the line could be shifted by a channel."""
+    events = _read(["5000,1,2", "5050,1,2", "5100,1,2", "1,2", "5200,3,4", "12,4,5"], 5.0)
+    assert [type(event) for event in events] == [Reading, Reading, Reading, Garbage, Reading, Reading]
+
+
+def test_a_missing_package_is_named_with_what_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "serial", None)
+    with pytest.raises(InputError, match=r'not installed; it is needed to read a serial.*pip install "liftopt\[lab\]"'):
+        SerialDevice("any", 3, 5.0)
+    with pytest.raises(InputError, match="no_such_package: the package is not installed"):
+        load_extra("no_such_package", "do this")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +11,9 @@ import pytest
 
 from liftopt.errors import InputError
 from liftopt.lab.c3d import read_c3d
-from liftopt.lab.extra import load_extra
 from liftopt.lab.recording import in_metres
 
-pytest.importorskip("ezc3d", reason="ezc3d is not installed (it is in the extra 'lab')")
+pytest.importorskip("ezc3d", reason="ezc3d is not installed (it is in the extra 'test')")
 
 FRAMES, LABELS = 20, ("A", "B", "*1", "D", "D")
 
@@ -127,7 +125,7 @@ def test_a_file_cut_short_is_read_as_far_as_it_goes(written: Path, points: Any, 
         (b"\x02\x50", "cut short within its header: 2 of 512"),
         (b"Coordinates\nversion=1\n" * 40, "not a C3D file"),
         (bytes(4096), "not a C3D file"),
-        (b"\x02\x50" + bytes(range(256)) * 8, "cannot be read as C3D|crashes"),
+        (b"\x02\x50" + bytes(range(256)) * 8, "block of 512 bytes where its frames should start: not in the file"),
     ],
     ids=["empty", "two bytes", "text", "zeros", "noise"],
 )
@@ -141,10 +139,10 @@ def test_what_is_no_c3d_file(content: bytes, match: str, tmp_path: Path) -> None
 
 
 def test_damaged_files_give_a_recording_or_one_clear_error(written: Path, tmp_path: Path) -> None:
-    """Random bytes in header and parameters: some of them make ezc3d crash, which must not take the caller along."""
+    """Random bytes in header and parameters: nothing else may come of them."""
     content, rng = written.read_bytes(), np.random.default_rng(3)
     path = tmp_path / "damaged.c3d"
-    for trial in range(5):
+    for trial in range(400):
         damaged = bytearray(content)
         for place in rng.integers(0, 2500, 20):
             damaged[place] = int(rng.integers(0, 256))
@@ -154,6 +152,7 @@ def test_damaged_files_give_a_recording_or_one_clear_error(written: Path, tmp_pa
             assert read_c3d(path).points.ndim == 3
         except InputError as error:
             assert str(path) in str(error)
+            assert len(str(error).split("\n")) == 1
 
 
 def test_paths_that_are_no_files(tmp_path: Path) -> None:
@@ -161,13 +160,3 @@ def test_paths_that_are_no_files(tmp_path: Path) -> None:
         read_c3d(tmp_path / "none.c3d")
     with pytest.raises(InputError, match="is not a file"):
         read_c3d(tmp_path)
-
-
-def test_a_missing_package_is_named_with_what_installs_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(sys.modules, "ezc3d", None)
-    with pytest.raises(
-        InputError, match=r'not installed; it is needed to read C3D files: pip install "liftopt\[lab\]"'
-    ):
-        read_c3d(tmp_path / "any.c3d")
-    with pytest.raises(InputError, match="no_such_package: the package is not installed"):
-        load_extra("no_such_package", "do this")
