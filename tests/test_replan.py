@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -49,7 +48,7 @@ def test_ten_random_changes_are_followed_and_verified(warm: Replanner, scenario:
         plan = warm.latest
         assert plan is not None
         reference = reference or Ipopt(plan.problem)
-        found, soon = plan.result, time.monotonic() + 30.0
+        found, soon = plan.result, np.inf
         polished = reference.solve(found.x, deadline=soon, warm=found.multipliers, problem=plan.problem)
         assert polished.converged
         np.testing.assert_allclose(solution.objective, polished.objective, rtol=1e-6)
