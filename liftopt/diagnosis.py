@@ -15,9 +15,8 @@ from liftopt.reasons import Obstacle
 
 Array = npt.NDArray[np.float64]
 MOST = 5  # reasons that are told
-TRIES = 3  # starts
-# Less time is not worth setting up the solver for [s].
-LEAST_TIME = 0.5
+# Starts, and iterations of IPOPT for all of them: what converges takes fewer than so many in all.
+TRIES, ITERATIONS = 3, 300
 
 
 @dataclass(frozen=True)
@@ -42,11 +41,13 @@ def find(problem: Problem, starts: Sequence[Array], deadline: float) -> Finding 
         SolverError: IPOPT cannot run.
     """
     found: list[Elastic] = []
+    left = ITERATIONS
     for x in starts[:TRIES]:
-        if time.monotonic() > deadline - LEAST_TIME:
+        if time.monotonic() > deadline:
             break
-        found.append(elastic(problem, x, deadline))
-        if found[-1].possible:
+        found.append(elastic(problem, x, deadline, left))
+        left -= found[-1].iterations
+        if found[-1].possible or left <= 0:
             break
     if not found:
         return None

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from liftopt import result_writer
 from liftopt.accuracy import Accuracy
+from liftopt.assessment.assess import assessed
 from liftopt.collocation.guess import Start, blend, naive_start, repertoire
 from liftopt.collocation.screen import screen, too_fast
 from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, Solver, SolverResult
@@ -21,7 +22,7 @@ from liftopt.diagnosis import find
 from liftopt.multistart import follow_up, solve_all
 from liftopt.plan import Plan
 from liftopt.reasons import Obstacle
-from liftopt.refinement import FINEST, SURE, finer, sharpened
+from liftopt.refinement import FINEST, SURE, SURE_ITERATIONS, finer, sharpened
 from liftopt.remedies import Remedies
 from liftopt.scenario import Scenario
 from liftopt.scene import motions_of
@@ -32,13 +33,18 @@ from liftopt.workshop import Workshop
 
 Array = npt.NDArray[np.float64]
 Say = Callable[[str], None]
-POSTURE_SHARE = 0.3  # of the time that is left, for the search for postures
-SOLVING_SHARE = 0.7
-WORKING_SHARE = 0.9  # with what is left after solving to find out why there is no solution, and what would help
+# How far the search goes is counted in starts and iterations. The time limit only stops what takes longer than
+# foreseen: trying what leads where at the first share of it, so that the best found can be finished, and that at the
+# second, so that it can be verified and written.
+TRYING_SHARE, WORKING_SHARE = 0.7, 0.9
 # Postures searched from, for each start tried on a coarse mesh: of 44 widely varied lifts, each with two seeds, 86
 # of 88 came within 5 % of what takes five times as long, with one 80 of 86, with one and twice the starts 85 of 88.
 SEEDS_A_TRY = 2
-WIDER = 4  # times as many starts are tried before a lift that has postures at both ends counts as impossible
+# Times as many starts are tried before a lift that has postures at both ends counts as impossible, and iterations of
+# each: half of those that converge take fewer.
+WIDER, LEAN = 3, 60
+SURE_STARTS = 2  # tried by IPOPT where the scenario's solver found nothing
+CUT = "the time limit of {limit:g} s cut the search short ({stage})"
 GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}
 
 
@@ -51,7 +57,7 @@ def lift(
 
     Args:
         scenario: what to lift.
-        out: folder to write the result to, or None.
+        out: folder to write the result to, or None; see ``result_writer.save`` for where an iterate goes.
         progress: hears one line at a time of what is going on.
         workshop: keeps what the next lift can use again; None keeps nothing.
 
@@ -65,7 +71,7 @@ def lift(
             progress(line)
 
     search = Search(scenario, workshop or Workshop(), motions_of(scenario), say)
-    solution = search.explained(search.sharpened(search.best()))
+    solution = assessed(search.explained(search.sharpened(search.best())))
     if out is not None:
         say("writing the result")
         result_writer.save(solution, out)
@@ -78,21 +84,40 @@ class Search:
     def __init__(self, scenario: Scenario, workshop: Workshop, spline: RestToRestSpline, say: Say) -> None:
         """Get ready; kernels and solvers are compiled here if they must be."""
         self.began = time.monotonic()
-        self.scenario, self.workshop, self.say = scenario, workshop, say
+        self.scenario, self.workshop, self._progress = scenario, workshop, say
+        self.deadline, self.stage, self.cut = np.inf, "", ""
         self.notes: list[str] = []
         self.records: list[StartRecord] = []
         self.plans: list[Plan] = []  # of the latest mesh, the best first
         self.accuracy: Accuracy | None = None
         self._on(spline)
-        self.postures = workshop.postures(self.problem, scenario, say)
+        self.postures = workshop.postures(self.problem, scenario, self.say)
         if not all(kernel.compiled for kernel in self.problem.team.kernels):
             self.notes.append("no C compiler: the dynamics ran in CasADi's virtual machine, several times slower")
         # Compiling is done once in a lifetime; the limit is on what comes after, with time left to verify and write.
         self.prepared = time.monotonic()
-        self.deadline = self.prepared + SOLVING_SHARE * scenario.solver.time_limit
-        self.end = self.prepared + WORKING_SHARE * scenario.solver.time_limit
+        self.deadline, self.end = (
+            self.prepared + share * scenario.solver.time_limit for share in (TRYING_SHARE, WORKING_SHARE)
+        )
         self.obstacles: tuple[Obstacle, ...] = ()
         self.nearest: list[Array] = []
+
+    def say(self, line: str) -> None:
+        """Tell what comes next, and note whether time was over before."""
+        self._note_time()
+        self.stage = line
+        self._progress(line)
+
+    def _note_time(self) -> None:
+        """Note what was being done when time was over, if it is."""
+        if not self.cut and time.monotonic() > self.deadline:
+            self.cut = CUT.format(limit=self.scenario.solver.time_limit, stage=self.stage)
+            self.notes.append(self.cut)
+
+    def _finish(self) -> None:
+        """Let the time that was kept for it be used for what was found."""
+        self._note_time()
+        self.deadline = self.end
 
     def best(self) -> Plan:
         """Return the best verified plan, on a finer mesh if it takes one, or the best iterate and why it is none."""
@@ -109,10 +134,11 @@ class Search:
     def run(self) -> Plan:
         """Solve from all starts and return the best verified plan, or the best iterate and why it is none."""
         options = self.scenario.solver
-        until = time.monotonic() + POSTURE_SHARE * (self.deadline - time.monotonic())
         tries = max(options.starts, options.tries) if options.tries else 0
         most = tries or options.starts
-        found = repertoire(self.problem, most, options.seed, until, self.say, self.postures, SEEDS_A_TRY * tries)
+        found = repertoire(
+            self.problem, most, options.seed, self.deadline, self.say, self.postures, SEEDS_A_TRY * tries
+        )
         if found is None or too_fast(self.problem):
             nearest, obstacles = self._nearest()
             if obstacles:
@@ -121,15 +147,17 @@ class Search:
         else:
             self.prepared = time.monotonic()
             optima = scout(self, found, tries)
+            self._finish()
             if optima and (best := finer(self, optima, self.spline.intervals)) is not None:
                 return best
             starts = found.starts(self.problem, options.starts)
+        self._finish()
         self.prepared = time.monotonic()
         best = self._solved([*starts, naive_start(self.problem)][: options.starts])
         return best if best.solved or best.refinable or found is None else self._wider() or best
 
     def _wider(self) -> Plan | None:
-        """Return the best verified plan of many more starts; None if none is found in time.
+        """Return the best verified plan of many more starts; None if none is found.
 
         That a lift is not possible has no proof where postures hold the object at both ends.
         """
@@ -137,7 +165,7 @@ class Search:
         if not tries or time.monotonic() > self.deadline:
             return None
         found = repertoire(self.problem, tries, seed, self.deadline, self.say, self.postures, SEEDS_A_TRY * tries)
-        optima = scout(self, found, tries) if found else []
+        optima = scout(self, found, tries, LEAN) if found else []
         best = finer(self, optima, self.spline.intervals) if optima else None
         if best is not None:
             self.obstacles, self.nearest = (), []
@@ -160,14 +188,18 @@ class Search:
         if best.solved:
             return self.solution(best)
         self.say(best.outcome)
-        remedies = Remedies(self, self.nearest, self.end).against(self.obstacles)
+        remedies = Remedies(self, self.nearest).against(self.obstacles)
         return replace(self.solution(best), reasons=self.obstacles, remedies=remedies)
 
     def solution(self, best: Plan) -> Solution:
         """Return the solution that the best plan stands for."""
         best.verification  # noqa: B018  (its time belongs to the total)
+        self._note_time()
         seconds = {"setup": self.prepared - self.began, "total": time.monotonic() - self.began}
-        return replace(best.solution(self.records, seconds, tuple(self.notes)), accuracy=self.accuracy)
+        solution = best.solution(self.records, seconds, tuple(self.notes))
+        if self.cut and not best.solved:
+            solution = replace(solution, outcome=f"{solution.status}; {self.cut}")
+        return replace(solution, accuracy=self.accuracy)
 
     def _on(self, spline: RestToRestSpline) -> None:
         """Go to another mesh."""
@@ -191,11 +223,13 @@ class Search:
         self.say(f"the {name} solver found no solution ({self.records[first].status}): IPOPT takes over")
         before = [f" (IPOPT, after {name}: {record.status})" for record in self.records[first:]]
         del self.records[first:]
-        sure = self.workshop.solver(self.problem, self.scenario, SURE, self.say)
-        return self._pick(starts, self._solve([sure], starts, before))
+        sure, few = self.workshop.solver(self.problem, self.scenario, SURE, self.say), starts[:SURE_STARTS]
+        return self._pick(few, self._solve([sure], few, before, SURE_ITERATIONS))
 
-    def _solve(self, solvers: list[Solver], starts: list[Start], before: list[str] | None = None) -> list[SolverResult]:
-        results, solved = [], solve_all(solvers, starts, self.deadline, self.problem)
+    def _solve(
+        self, solvers: list[Solver], starts: list[Start], before: list[str] | None = None, most: int | None = None
+    ) -> list[SolverResult]:
+        results, solved = [], solve_all(solvers, starts, self.deadline, self.problem, most=most)
         for i, start in enumerate(starts):
             which = f" ({i + 1} of {len(starts)})" if len(starts) > 1 else ""
             self.say(f"solving on {self.spline.intervals} intervals: {start.name}{which}")
@@ -221,14 +255,14 @@ class Search:
         """Solve from the motion that breaks least, or return it with what it breaks."""
         self.say("looking for what is in the way")
         first, *others = [start.x for start in starts]
-        finding = find(self.problem, [first, best.result.x, *others], self.end)
+        finding = find(self.problem, [first, best.result.x, *others], self.deadline)
         if finding is None:
             return best
         eased = Start("elastic", finding.x)
         self.obstacles, self.nearest = finding.reasons, [finding.x]
         if finding.reasons:
             return self._hindered(eased, list(finding.reasons)) if finding.sure else best
-        result = self.solvers[0].solve(eased.x, deadline=self.end, problem=self.problem)
+        result = self.solvers[0].solve(eased.x, deadline=self.deadline, problem=self.problem)
         plan = self._plan(eased, result)
         if not (plan.solved or plan.refinable):
             return best

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from liftopt.collocation.guess import Start, recombined, turned
+from liftopt.collocation.postures import rounded
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.abreast import abreast
 from liftopt.collocation.solvers.result import Solver, SolverResult
-
-# One start of several may take this share of the time that is left.
-START_SHARE = 0.5
 
 
 def solve_all(
@@ -21,6 +18,7 @@ def solve_all(
     deadline: float,
     problem: Problem | None = None,
     margin: float = 1.0,
+    most: int | None = None,
 ) -> Iterator[SolverResult]:
     """Solve from every start; yield the results in the order of the starts, whatever the number of solvers.
 
@@ -34,15 +32,17 @@ def solve_all(
         deadline: ``time.monotonic`` value past which solvers stop.
         problem: what is solved; None: what each solver was built for.
         margin: how many times the rival's objective is still of interest.
+        most: iterations of each; None: as many as its solver takes.
 
     Raises:
         SolverError: a solver cannot run at all.
     """
     first, *others = starts
-    (leader,) = solve_each(solvers[:1], [(first, None)], deadline, problem, START_SHARE if others else 1.0)
+    (leader,) = solve_each(solvers[:1], [(first, None)], deadline, problem, most)
     yield leader
     rival = replace(leader, objective=margin * leader.objective)
-    yield from solve_each(solvers, [(start, rival if start.moves else None) for start in others], deadline, problem)
+    rivalled = [(start, rival if start.moves else None) for start in others]
+    yield from solve_each(solvers, rivalled, deadline, problem, most)
 
 
 def solve_each(
@@ -50,7 +50,7 @@ def solve_each(
     starts: Sequence[tuple[Start, SolverResult | None]],
     deadline: float,
     problem: Problem | None = None,
-    share: float = START_SHARE,
+    most: int | None = None,
 ) -> Iterator[SolverResult]:
     """Solve from every start, each with the rival it has, if any; yield the results in their order.
 
@@ -59,7 +59,7 @@ def solve_each(
         starts: where to start, and what is to be beaten.
         deadline: ``time.monotonic`` value past which solvers stop.
         problem: what is solved; None: what each solver was built for.
-        share: of the time that is left, which one start may take.
+        most: iterations of each; None: as many as its solver takes.
 
     Raises:
         SolverError: a solver cannot run at all.
@@ -67,8 +67,7 @@ def solve_each(
 
     def job(start: Start, rival: SolverResult | None) -> Callable[[Solver], SolverResult]:
         def solve(solver: Solver) -> SolverResult:
-            now = time.monotonic()
-            return solver.solve(start.x, deadline=now + share * (deadline - now), problem=problem, rival=rival)
+            return solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=rival, most=most)
 
         return solve
 
@@ -87,7 +86,7 @@ def follow_up(
         solver: for the problem.
         starts: what was solved from.
         results: where each of them led.
-        deadline: ``time.monotonic`` value past which no more is tried.
+        deadline: ``time.monotonic`` value past which solvers stop.
         problem: what is solved.
     """
 
@@ -99,10 +98,10 @@ def follow_up(
 
     optima = [result for result in results if result.converged]
     for make in (together, back):
-        if not optima or time.monotonic() > deadline:
+        if not optima:
             return
         best = min(optima, key=lambda result: result.objective)
         if (start := make(best)) is not None:
-            result = solver.solve(start.x, deadline=deadline, problem=problem, rival=best)
+            result = solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=best)
             optima += [result] if result.converged else []
             yield start, result

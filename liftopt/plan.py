@@ -75,7 +75,8 @@ class Plan:
     def at(self, time: Array) -> Motion:
         """Return what everybody does at ``time`` (K,) [s], by Pinocchio: q, v, a, torques, grasp forces, the object.
 
-        Before the start and after the end it is at rest there.
+        Before the start and after the end it is as at that end: at rest, with the acceleration, torques and forces that
+        the motion starts or ends with (none of the acceleration with ``task.rest = "acceleration"``).
         """
         phase = np.clip(np.asarray(time, dtype=float) / self.problem.task.duration, 0.0, 1.0)
         return motion_at(self.problem, self.spline, self.result.x, phase)

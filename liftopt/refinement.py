@@ -37,7 +37,8 @@ Say = Callable[[str], None]
 FINEST = 400
 # Of 16 lifts optima on N = 10, 20 and 40 were up to 0.3 apart in one basin, and in two from 0.6 to 6.
 SAME_MOTION = 0.4  # [rad, m]
-SURE = "ipopt"  # where another solver finds nothing
+SURE = "ipopt"  # where another solver finds nothing; then it gets so many iterations from each start
+SURE_ITERATIONS = 200
 QUICKEST = ("banded", SURE)
 MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
 # A mesh that starts are tried on is halved while so many intervals are left. Of 26 widely varied lifts on 80 intervals
@@ -109,7 +110,8 @@ def neighbour(
             solver = workshop.solver(problem, scenario, name, say)
         except SolverError:  # an extension that is missing: the next one does
             continue
-        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem, rival=rival)
+        most = None if name == solvers[0] else SURE_ITERATIONS
+        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem, rival=rival, most=most)
         if told and (result.converged or result.status == BEATEN):
             told(start_name, result)
         if result.converged:

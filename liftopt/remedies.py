@@ -18,7 +18,7 @@ import numpy.typing as npt
 from liftopt.collocation.guess import Start, posture_starts
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.screen import too_fast
-from liftopt.collocation.solvers.result import Solver
+from liftopt.collocation.solvers.result import Multipliers, Solver, SolverResult
 from liftopt.collocation.transfer import transfer
 from liftopt.errors import InputError, SolverError
 from liftopt.plan import Plan
@@ -30,8 +30,13 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 STARTS = 2  # of each changed scenario
-SECONDS_A_START = 1.0  # and for the search for its postures
-ENOUGH, LONGEST = 4, 10.0  # remedies, and [s] for all of them
+ITERATIONS = 150  # of each start
+ENOUGH = 4  # remedies
+# Work for all remedies, and what a search for postures counts as: in iterations of the solver on so many intervals, by
+# the time they take.
+WORK, POSTURES, INTERVALS = 4000.0, 70.0, 20
+# Of seeds, for postures. With three rounds of them and as much work in all, two of eight remedies were not found.
+ROUNDS = 1
 LEAST_MOVE = 0.05  # [m], tried first where nothing says how far to move
 GROWTH = 1.6  # of a change that does not help yet
 QUICK = "banded"
@@ -107,39 +112,45 @@ def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]
 class Remedies:
     """Looks for changes of one scenario, for which no solution was found."""
 
-    def __init__(self, search: Search, near: Iterable[Array], deadline: float) -> None:
+    def __init__(self, search: Search, near: Iterable[Array], work: float = WORK) -> None:
         """Get ready.
 
         Args:
-            search: the search that found nothing.
+            search: the search that found nothing; past its deadline no more is tried.
             near: unknowns to start from besides postures.
-            deadline: ``time.monotonic`` value past which no more is tried.
+            work: after which no more is tried, see ``WORK``.
         """
-        self.search, self.near, self.deadline = search, list(near), min(deadline, time.monotonic() + LONGEST)
+        self.search, self.near, self.left = search, list(near), work
 
     def against(self, obstacles: Sequence[Obstacle]) -> tuple[Remedy, ...]:
-        """Return verified remedies, the smallest change first; none if none was found in time."""
+        """Return verified remedies, the smallest change first."""
         found: list[Remedy] = []
         hints = [(lever, _hint(self.search.scenario, lever, obstacles)) for lever in levers(self.search.scenario)]
         helpful = [(lever, hint) for lever, hint in hints if hint]
         for i, (lever, hint) in enumerate(helpful):
-            now = time.monotonic()
-            if now > self.deadline or len(found) == ENOUGH:
+            if not self._goes_on(0.0) or len(found) == ENOUGH:
                 break
             what = " and ".join(lever.keys)
             self.search.say(f"looking for the smallest change that helps: {what} ({i + 1} of {len(helpful)})")
-            remedy = self._smallest(lever, hint, now + 2 * (self.deadline - now) / (len(helpful) - i + 1))
+            remedy = self._smallest(lever, hint, self.left - 2 * self.left / (len(helpful) - i + 1))
             if remedy:
                 found.append(remedy)
         return tuple(sorted(found, key=lambda remedy: remedy.size))
 
-    def _smallest(self, lever: Lever, hint: int, until: float) -> Remedy | None:
-        """Return the smallest change of a lever that leads to a verified lift; ``hint`` steps are tried first."""
+    def _goes_on(self, rest: float) -> bool:
+        """Whether more work is left than ``rest``, and time."""
+        return self.left > rest and time.monotonic() < self.search.deadline
+
+    def _smallest(self, lever: Lever, hint: int, rest: float) -> Remedy | None:
+        """Return the smallest change of a lever that leads to a verified lift; ``hint`` steps are tried first.
+
+        ``rest`` of the work is left to others.
+        """
         signs = [sign for sign, words in ((-1, lever.less), (1, lever.more)) if words]
         plan, steps, fails, sign = None, min(hint, lever.most), 0, 0
-        while plan is None and steps <= lever.most and time.monotonic() < until:
+        while plan is None and steps <= lever.most and self._goes_on(rest):
             for sign in signs:
-                plan = self._plan(lever, sign * steps, until, None)
+                plan = self._plan(lever, sign * steps, None)
                 if plan:
                     break
             else:
@@ -147,9 +158,9 @@ class Remedies:
         if plan is None:
             return None
         helps = steps
-        while helps - fails > 1 and time.monotonic() < until:
+        while helps - fails > 1 and self._goes_on(rest):
             middle = (helps + fails) // 2
-            nearer = self._plan(lever, sign * middle, until, plan)
+            nearer = self._plan(lever, sign * middle, plan)
             plan, helps, fails = (nearer, middle, fails) if nearer else (plan, helps, middle)
         return self._remedy(lever, sign, plan) if self._holds(plan) else None
 
@@ -164,13 +175,19 @@ class Remedies:
 
     def _holds(self, plan: Plan) -> bool:
         """Whether the plan is verified, on finer meshes if it takes them."""
-        while plan.refinable and time.monotonic() < self.deadline and 2 * plan.spline.intervals <= FINEST:
+        while plan.refinable and 2 * plan.spline.intervals <= FINEST:
             finer = plan.spline.on(2 * plan.spline.intervals)
             problem = self.search.workshop.problem(plan.scenario, finer)
             start = transfer(plan.problem, plan.spline, plan.result.x, problem, finer)
-            result = self._solver(problem, plan.scenario).solve(start, deadline=self.deadline, problem=problem)
-            plan = Plan(plan.scenario, problem, finer, plan.start, result)
+            plan = Plan(plan.scenario, problem, finer, plan.start, self._solve(problem, plan.scenario, start))
         return plan.solved
+
+    def _solve(self, problem: Problem, scenario: Scenario, x: Array, warm: Multipliers | None = None) -> SolverResult:
+        """Solve from ``x`` (n_x,), and count it as work."""
+        solver = self._solver(problem, scenario)
+        result = solver.solve(x, deadline=self.search.deadline, warm=warm, problem=problem, most=ITERATIONS)
+        self.left -= result.iterations * (len(problem.mesh.phase) - 1) / INTERVALS
+        return result
 
     def _solver(self, problem: Problem, scenario: Scenario) -> Solver:
         try:
@@ -178,33 +195,34 @@ class Remedies:
         except SolverError:
             return self.search.workshop.solver(problem, scenario, scenario.solver.name)
 
-    def _plan(self, lever: Lever, steps: int, until: float, near: Plan | None) -> Plan | None:
+    def _plan(self, lever: Lever, steps: int, near: Plan | None) -> Plan | None:
         """Return a plan of the changed scenario that converged, from a plan of a near one if there is one, or None."""
         scenario = _changed(self.search.scenario, lever, steps)
         if scenario is None:
             return None
         workshop, spline = self.search.workshop, self.search.spline
-        problem = workshop.problem(scenario, spline)
+        try:
+            problem = workshop.problem(scenario, spline)
+        except InputError:  # the change leaves what a model can be
+            return None
         if too_fast(problem):
             return None
-        solver = self._solver(problem, scenario)
 
         def solved(start: Start, warm: Plan | None = None) -> Plan | None:
-            deadline = min(until, time.monotonic() + SECONDS_A_START)
-            multipliers = warm.result.multipliers if warm else None
-            result = solver.solve(start.x, deadline=deadline, warm=multipliers, problem=problem)
+            result = self._solve(problem, scenario, start.x, warm.result.multipliers if warm else None)
             plan = Plan(scenario, problem, spline, start.name, result)
             return plan if plan.result.converged and (plan.solved or plan.refinable) else None
 
         if near and near.problem.same_structure(problem):
             return solved(Start("near", near.result.x), near)
-        soon = min(until, time.monotonic() + SECONDS_A_START)
         postures = workshop.postures(problem, scenario)
-        starts = posture_starts(problem, STARTS, scenario.solver.seed, soon, postures=postures)
+        deadline, seed = self.search.deadline, scenario.solver.seed
+        starts = posture_starts(problem, STARTS, seed, deadline, postures=postures, rounds=ROUNDS)
+        self.left -= POSTURES
         if starts:
             lower, upper = problem.bounds()
             starts += [Start("near", np.clip(x, lower, upper)) for x in self.near if x.shape == lower.shape]
-        return next(filter(None, map(solved, starts)), None) if time.monotonic() < until else None
+        return next(filter(None, map(solved, starts)), None)
 
 
 def _hint(scenario: Scenario, lever: Lever, obstacles: Sequence[Obstacle]) -> int:

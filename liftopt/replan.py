@@ -16,6 +16,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+from liftopt.assessment.assess import assessed
 from liftopt.collocation.kernels import Say
 from liftopt.lift import Search
 from liftopt.plan import Plan
@@ -68,12 +69,12 @@ class Replanner:
             record = StartRecord(plan.start, "converged", result.objective, result.iterations, result.seconds)
             solution = plan.solution([record], {"setup": 0.0, "total": now - began})
             late = began + scenario.solver.time_limit
-            return replace(solution, accuracy=estimate(self._workshop, plan, late, self._say))
+            return assessed(replace(solution, accuracy=estimate(self._workshop, plan, late, self._say)))
         search = Search(scenario, self._workshop, motions_of(scenario), self._say)
         best = search.sharpened(search.best())
         if best.solved:
             self.latest = best
-        return search.solution(best)
+        return assessed(search.solution(best))
 
     def replan(self, scenario: Scenario) -> Plan | None:
         """Return the plan of a changed scenario from the latest one, as fast as it can be had and not yet verified.

@@ -9,6 +9,7 @@ from dataclasses import MISSING, dataclass, fields
 from typing import Any, TypeVar, get_args, get_type_hints
 
 from liftopt.accuracy import Accuracy
+from liftopt.assessment.finding import SUBJECTS, Assessment, Finding
 from liftopt.checks import Check
 from liftopt.reasons import Obstacle, Remedy
 from liftopt.solution import StartRecord
@@ -60,6 +61,19 @@ def read_record(text: str) -> Record:
     if not record.checks:
         raise ValueError("no check is recorded")
     return record
+
+
+def read_assessment(text: str) -> Assessment:
+    """Return the assessment of a JSON text.
+
+    Raises:
+        ValueError, KeyError: it is no JSON, an entry is missing or of another type, or there is no verdict.
+        RecursionError: it is nested too deep.
+    """
+    assessment = Assessment(_entries(Finding, json.loads(text)))
+    for subject in SUBJECTS:
+        assessment.verdict(subject)
+    return assessment
 
 
 def _entries(of: type[T], given: Any, absent: Mapping[str, float] | None = None) -> tuple[T, ...]:

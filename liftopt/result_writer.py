@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import platform
 from dataclasses import asdict
 from importlib.metadata import version
@@ -16,7 +18,8 @@ import liftopt
 from liftopt.accuracy import Accuracy
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.errors import InputError
-from liftopt.result_folder import MODELS, NETCDF, SCENARIO, locked, replace_result
+from liftopt.netcdf_file import read_netcdf
+from liftopt.result_folder import MODELS, NETCDF, SCENARIO, UNSOLVED, locked, replace_result, standing_result
 from liftopt.scenario import scenario_to_toml
 from liftopt.seal import sealed
 from liftopt.solution import Solution
@@ -25,8 +28,13 @@ LIBRARIES = ("casadi", "pin", "numpy", "scipy", "h5netcdf")
 Variable = tuple[tuple[str, ...], Any, str, str]
 
 
-def save(solution: Solution, out: Path) -> None:
+def save(solution: Solution, out: Path) -> Path:
     """Write a solution into the folder ``out``: all files or none, each whole; see ``result_folder``.
+
+    What is no solution never replaces one: if there is one in ``out``, it goes to ``out/unsolved``.
+
+    Returns:
+        The folder that it was written to.
 
     Raises:
         InputError: the folder or a file cannot be written.
@@ -36,9 +44,29 @@ def save(solution: Solution, out: Path) -> None:
     try:
         out.mkdir(parents=True, exist_ok=True)
         with locked(out, to_write=True):
-            replace_result(out, files)
+            if solution.solved or not holds_more_than_an_iterate(out):
+                replace_result(out, files)
+                return out
+            aside = out / UNSOLVED
+            if aside.is_symlink():
+                raise OSError(errno.ENOTDIR, f"{aside} is a link, and what is written there would be elsewhere")
+            aside.mkdir(exist_ok=True)
+            with locked(aside, to_write=True):
+                replace_result(aside, files)
+            return aside
     except OSError as error:
         raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from error
+
+
+def holds_more_than_an_iterate(folder: Path) -> bool:
+    """Return whether a folder holds a result that is not certainly one of a solve that failed."""
+    file = standing_result(folder) / NETCDF
+    if not os.path.lexists(file):
+        return False
+    try:
+        return bool(read_netcdf(file)[1]["verified"] != 0)
+    except (InputError, OSError, LookupError, ValueError, TypeError):  # whatever it is, it may be worth something
+        return True
 
 
 def _netcdf(solution: Solution) -> bytes:
@@ -160,6 +188,7 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "max_violation": solution.verification.max_violation,
         "kkt_error": solution.verification.kkt_error,
         "versions": json.dumps(versions),
+        "assessment": json.dumps(solution.assessment.plain(), allow_nan=False),
         "record": json.dumps(record(solution), allow_nan=False),
     }
     attributes |= {f"objective_{name}": value for name, value in solution.objective_terms.items()}

@@ -8,7 +8,6 @@ of all 24 in 50 lifts, the four most promising ones (``moves.py``) in 32.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -26,8 +25,6 @@ from liftopt.variations import vary
 if TYPE_CHECKING:
     from liftopt.lift import Search
 
-# Of the time that is left for solving.
-SCOUTING_SHARE = 0.5
 # A scout is given up where it promises nothing below so many times the optimum of the first. A margin finds more: of
 # heavy or long lifts the objective falls late.
 MARGIN = 1.2
@@ -35,17 +32,20 @@ MARGIN = 1.2
 # is left to find an optimum that is not known (``_unseen``), at most the second. Of 38 lifts variations lowered the
 # objective by over 1 % in 8 of 11 where that chance was 0.35 or more, in 5 of 27 where it was less; more gained little.
 IDLE, MOST_IDLE = 6.0, 2.0
+# Variations in all, for each try: where gain follows gain, more would take longer than all the rest.
+MOST_VARIED = 8
 # Share of the objective that scouts' KKT errors may reach: the iterations that are saved are a fifth.
 ROUGH = 1e-5
 
 
-def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
+def scout(search: Search, found: Repertoire, tries: int, most: int | None = None) -> list[Plan]:
     """Return the optima on a coarse mesh that may lead to the best one, the best first; none if none was found.
 
     Args:
         search: on the mesh that was asked for.
         found: where to start from.
         tries: starts to be tried.
+        most: iterations of each start; None: as many as the solver takes.
     """
     scenario, intervals = search.scenario, meshes_below(search.spline.intervals)[0]
     if intervals < FEWEST or not tries:
@@ -61,15 +61,17 @@ def scout(search: Search, found: Repertoire, tries: int) -> list[Plan]:
         ]
     except SolverError:  # an extension that is missing: the search goes on without
         return []
-    until = time.monotonic() + SCOUTING_SHARE * (search.deadline - time.monotonic())
-    results = list(solve_all(solvers, starts, until, problem, MARGIN))
+    until = search.deadline
+    results = list(solve_all(solvers, starts, until, problem, MARGIN, most))
     tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
     optima, plain = _distinct(search, problem, spline, tried), len(tried)
     if optima:
         search.say(f"varying the best of {len(optima)} optima")
         results = [plan.result for plan in optima]
-        idle = min(IDLE * _unseen(tried), MOST_IDLE) * tries
-        tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until)
+        # A wider search, of more tries than the scenario's, is for lifts that nothing was found for: any will do.
+        share = min(tries, scenario.solver.tries)
+        idle, most = min(IDLE * _unseen(tried), MOST_IDLE) * share, MOST_VARIED * share
+        tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until, most)
         optima = _distinct(search, problem, spline, tried)
     near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
     chosen = near[: scenario.solver.starts]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.accuracy import Accuracy
+from liftopt.assessment.finding import Assessment
 from liftopt.checks import Verification
 from liftopt.reasons import Obstacle, Remedy
 from liftopt.scenario import Scenario
@@ -59,6 +60,7 @@ class Solution:
         accuracy: how far it is from the lift in continuous time; None for what is no solution.
         reasons: what is in the way where there is no solution, the worst first.
         remedies: changes that make a solution possible, each solved and verified; the smallest first.
+        assessment: what it means for the person and the robot, and how far it can be trusted, as every output tells it.
     """
 
     scenario: Scenario
@@ -80,6 +82,7 @@ class Solution:
     accuracy: Accuracy | None = None
     reasons: tuple[Obstacle, ...] = ()
     remedies: tuple[Remedy, ...] = ()
+    assessment: Assessment = field(default_factory=Assessment)
 
     @property
     def solved(self) -> bool:

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.interpolation import between_knots
+from liftopt.result_folder import FILES
 from liftopt.scenario import scenario_to_dict
 
 if TYPE_CHECKING:
@@ -55,11 +57,14 @@ TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2
 def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
     """Return the figures that sum up a solution; every number in it is finite or None.
 
+    Peaks are taken between the knots too; of what is no solution, at the knots.
+
     Args:
         solution: solved or not.
         out: folder that it was written to, if any.
     """
     solved = bool(solution.solved)
+    fine = between_knots(solution) if solved else solution
     return {
         "name": solution.scenario.name,
         "status": solution.status,
@@ -68,13 +73,15 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "reason": None if solved else solution.status,
         "reasons": [asdict(reason) for reason in solution.reasons],
         "remedies": [asdict(remedy) for remedy in solution.remedies],
+        "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
+        "files": [] if out is None else [str(out / name) for name in FILES],
         "scenario": scenario_to_dict(solution.scenario),
-        "joints": {agent.name: _joints(solution, agent) for agent in solution.agents},
+        "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
-        "grasp_force": _grasp_force(solution),
-        "grasp_moment": _grasp_moment(solution),
-        "ground_reaction": _ground_reaction(solution),
+        "grasp_force": _grasp_force(fine),
+        "grasp_moment": _grasp_moment(fine),
+        "ground_reaction": _ground_reaction(fine),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),

@@ -1,4 +1,4 @@
-"""The summary of a solution as text for a terminal, 80 columns wide, readable without colour."""
+"""The tables of a summary for a terminal, 80 columns wide, readable without colour."""
 
 from __future__ import annotations
 
@@ -14,55 +14,28 @@ WIDTH = 80
 NEAR_LIMIT = 0.8  # share of a torque limit from which it is marked
 BLOCKS = "▁▂▃▄▅▆▇█"
 ASCII_BLOCKS = "_.-~=+*#"
-AT_KNOTS, BETWEEN = " at the knots", " between knots"
 
 
-def print_summary(summary: dict[str, Any], console: Console) -> None:
-    """Print what ``liftopt.summary.summary_dict`` gave."""
-    _head(summary, console)
-    parts: list[Table | str] = [
-        *(_joints(agent, rows) for agent, rows in summary["joints"].items()),
-        _load_share(summary["load_share"], console.options.ascii_only),
-        _forces(summary),
-        _objective(summary["objective"]),
+def print_details(summary: dict[str, Any], console: Console) -> None:
+    """Print the tables of what ``liftopt.summary.summary_dict`` gave; of an iterate only how the solver fared."""
+    lift: list[Table | str] = []
+    if summary["solved"]:
+        lift = [
+            *(_joints(agent, rows) for agent, rows in summary["joints"].items()),
+            _load_share(summary["load_share"], console.options.ascii_only),
+            _forces(summary),
+            _objective(summary["objective"]),
+        ]
+    solver = [
         _starts(summary["solver"]),
         _effort(summary["solver"]),
         _accuracy(summary["accuracy"], summary["solver"]["intervals"]),
         _verification(summary["verification"]),
     ]
-    for part in parts:
+    for part in (*lift, *solver):
         if not isinstance(part, str):
             console.print()
         console.print(part, width=min(console.width, WIDTH), highlight=False)
-    console.print()
-    for note in summary["notes"]:
-        console.print(f"Note: {escape(note)}", width=min(console.width, WIDTH), highlight=False)
-    if summary["out"] is not None:
-        marked = "" if summary["solved"] else " (marked as not solved)"
-        text = f"Written to {summary['out']}: solution.nc, scenario.toml, models/*.urdf{marked}"
-        console.print(escape(text), soft_wrap=True, highlight=False)  # a path that is broken up cannot be copied
-
-
-def _head(summary: dict[str, Any], console: Console) -> None:
-    scenario = summary["scenario"]
-    human, robot, table, task = (scenario[key] for key in ("human", "robot", "table", "task"))
-    verdict = "[green]solved and verified[/green]" if summary["solved"] else "[bold red]NOT SOLVED[/bold red]"
-    lines = [f"[bold]{escape(summary['name'])}[/bold]: {verdict}"]
-    if summary["reason"]:
-        lines.append(escape(summary["reason"]))
-    lines += [
-        f"{human['sex']} {human['stature']:g} m, {human['mass']:g} kg and {robot['model']} lift {table['mass']:g} kg "
-        f"({table['depth']:g} x {table['width']:g} x {table['height']:g} m)",
-        f"from {task['start']['height']:g} to {task['end']['height']:g} m in {scenario['duration']:g} s, "
-        f"standing {task['standing_distance']:g} m apart",
-    ]
-    for line in lines:
-        console.print(line, width=min(console.width, WIDTH), highlight=False)
-    for title, items in (("In the way", summary["reasons"]), ("With one of these it was solved", summary["remedies"])):
-        if items:
-            console.print(f"[bold]{title}:[/bold]", highlight=False)
-        for item in items:
-            console.print(f"  - {escape(item['message'])}", width=min(console.width, WIDTH), highlight=False)
 
 
 def _table(title: str, *columns: str, caption: str = "") -> Table:
@@ -86,7 +59,7 @@ def _joints(agent: str, rows: list[dict[str, Any]]) -> Table:
     table = _table(
         f"{agent.capitalize()} joint torques",
         *("<joint", "peak [Nm]", "at [s]", "share", "<", "q [deg]"),
-        caption="share: largest torque / limit in its direction; ! from 80%",
+        caption="between the knots too; share: largest torque / limit in its direction; ! from 80%",
     )
     for row in rows:
         largest = row["largest_share_of_limit"]
@@ -213,28 +186,27 @@ def _times(value: float | None, factor: float) -> float | None:
 
 def _verification(verification: dict[str, Any]) -> Table:
     verdict = "all passed" if verification["passed"] else "FAILED"
-    table = _table(f"Verification: {verdict}", "<check", "<unit", "at knots", "between", "allowed", "<", "<worst at")
-    rows: dict[str, dict[str, dict[str, Any]]] = {}
+    table = _table(f"Verification: {verdict}", "<check", "<unit", "worst", "allowed", "<", "<where")
     for check in verification["checks"]:
-        between = check["name"].endswith(BETWEEN)
-        name = check["name"].removesuffix(BETWEEN).removesuffix(AT_KNOTS)
-        rows.setdefault(name, {})["between" if between else "knots"] = check
-    for name, pair in rows.items():
-        checks = [pair[place] for place in ("knots", "between") if place in pair]
-        allowed = [_short(check["limit"]) for check in checks if check["limit"] is not None]
         table.add_row(
-            escape(name),
-            escape(checks[0]["unit"]),
-            *(_short(pair[place]["value"]) if place in pair else "" for place in ("knots", "between")),
-            ", ".join(allowed) or "-",
-            "ok" if all(check["passed"] for check in checks) else "[bold red]FAILED[/bold red]",
-            escape(next((check["where"] for check in checks if not check["passed"]), checks[0]["where"])),
+            escape(check["name"]),
+            escape(check["unit"]),
+            _short(check["value"]),
+            _short(check["limit"]),
+            _state(check["passed"], check["limit"]),
+            escape(check["where"]),
         )
     error, tolerance = verification["kkt_error"], verification["kkt_tolerance"]
     reached = error is not None and error <= tolerance
-    state = "ok" if reached else "[bold red]FAILED[/bold red]"
-    table.add_row("KKT error", "", _short(error), "", _short(tolerance), state)
+    table.add_row("KKT error", "", _short(error), _short(tolerance), _state(reached, tolerance))
     return table
+
+
+def _state(passed: bool, limit: float | None) -> str:
+    """Return how a check ended; a value without a limit is told and has not passed anything."""
+    if limit is None:
+        return "no limit"
+    return "ok" if passed else "[bold red]FAILED[/bold red]"
 
 
 def _fixed(value: float | None, digits: int, *, sign: bool = False) -> str:

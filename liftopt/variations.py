@@ -55,6 +55,7 @@ def vary(
     idle: float,
     seed: int,
     deadline: float,
+    most: float = np.inf,
 ) -> Iterator[tuple[Start, SolverResult]]:
     """Solve from variations of optima and of what comes of them; yield each with its result.
 
@@ -66,6 +67,7 @@ def vary(
         idle: variations without a gain after which it ends.
         seed: of what is random.
         deadline: ``time.monotonic`` value past which no more is tried.
+        most: variations after which it ends in any case; the turn that is begun is ended.
     """
     if not idle:
         return
@@ -81,10 +83,10 @@ def vary(
         )
         return _Varied(result, _in_turns(kinds))
 
-    known, best, since = [varied(optimum) for optimum in optima], min(optima, key=_objective), 0
-    while since < idle and time.monotonic() < deadline:
-        most = NEAR * best.objective
-        ready = [entry for entry in known if entry.result.objective <= most and not entry.exhausted]
+    known, best, since, solved = [varied(optimum) for optimum in optima], min(optima, key=_objective), 0, 0
+    while since < idle and solved < most and time.monotonic() < deadline:
+        highest = NEAR * best.objective
+        ready = [entry for entry in known if entry.result.objective <= highest and not entry.exhausted]
         if not ready:
             return
         chosen = min(ready, key=lambda entry: entry.rank)
@@ -94,7 +96,7 @@ def vary(
         results = solve_each(solvers, [(start, best) for start in starts], deadline, problem)
         for start, result in zip(starts, results, strict=True):
             yield start, result
-            since += 1
+            since, solved = since + 1, solved + 1
             is_known = any(same_optimum(result.objective, entry.result.objective) for entry in known)
             if not result.converged or is_known:
                 continue

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.checks import AT_KNOTS, Check, Verification
+from liftopt.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, Check, Verification
 from liftopt.collocation.constraints import BALANCE_ROWS, served_rows
 from liftopt.collocation.flat_hand import flat_hand_rows
 from liftopt.collocation.kkt import kkt_error
@@ -17,7 +17,6 @@ from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.trajectory import AgentTrajectory, angle_between, attitude, turned
 
 Array = npt.NDArray[np.float64]
-FINER = 10
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
 AT_ENDS = 1e-9
 OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
@@ -40,7 +39,7 @@ def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tol
         _closure("closure between knots", fine, CLOSURE_BETWEEN_KNOTS, np.arange(len(fine.time))),
         *_balance(problem, knots, fine),
         *_limits(problem, knots, AT_KNOTS, ""),
-        *_limits(problem, fine, np.inf, " between knots"),
+        *_limits(problem, fine, np.inf, BETWEEN_KNOTS),
         *_ends(problem, spline, knots),
         _objective(problem, knots, result),
     ]

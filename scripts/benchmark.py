@@ -28,7 +28,7 @@ PARTS = {
     "many_starts": "64 starts on 2 processes",
     "objective": "J of 40 varied scenarios against before",
     "virtual_machine": "the same NLP in CasADi's virtual machine",
-    "snopt": "the same NLP through SNOPT (needs drake)",
+    "snopt": "SNOPT at the paper's size and on the same NLP (needs drake)",
     "moco": "the same lift in OpenSim Moco (needs opensim)",
     "floor": "Pinocchio's computeRNEADerivatives",
     "profile": "where each millisecond goes",
@@ -105,8 +105,8 @@ def _jobs(
         "many_starts": lambda: add("many_starts")(whole.many_starts(few)),
         "objective": lambda: add("objective")(varied.objectives(options.objective_with, count)),
         "virtual_machine": lambda: add("virtual_machine")(rivals.virtual_machine(few)),
-        "snopt": lambda: add("snopt")(rivals.through_snopt(case, options.rival_seconds)),
-        "moco": lambda: add("moco")(moco.measure(case, options.rival_seconds)),
+        "snopt": lambda: add("snopt_zero", "snopt_small", "snopt")(rivals.through_snopt(options.rival_seconds)),
+        "moco": lambda: add("moco", "moco_naive", "moco_fine")(moco.measure(case, options.rival_seconds)),
         "floor": lambda: add("floor")(rivals.floor(case, repeats)),
         "profile": lambda: stages.update(profile(case, repeats)),
     }
@@ -125,7 +125,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", default="results/benchmark", help="folder for benchmark.json and the plot")
     parser.add_argument("--compare", metavar="OLD.json", help="say what changed since another run's benchmark.json")
     parser.add_argument(
-        "--rival-seconds", type=float, default=200.0, help="processor time for SNOPT, wall time for Moco"
+        "--rival-seconds", type=float, default=600.0, help="most for one solve: processor time of SNOPT, wall of Moco"
     )
     parser.add_argument("--objective-with", choices=("ipopt", "banded"), default="ipopt",
                         help="solver whose best of eight starts is compared with before")  # fmt: skip

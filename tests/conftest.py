@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from liftopt.assessment.finding import Assessment, Finding
 from liftopt.multibody.agent import Grasp
 from liftopt.scenario import load_scenario
 from liftopt.solution import Solution
@@ -98,4 +99,12 @@ def solution() -> SimpleNamespace:
         accuracy=None,
         reasons=(),
         remedies=(),
+        assessment=Assessment.of(
+            [
+                Finding("verdict.mathematics", "info", "solved and verified", "Solved and verified."),
+                Finding("verdict.robot", "info", "within limits", "The robot is within limits."),
+                Finding("verdict.person", "warning", "warning", "Warning for the person: posture RULA 6 of 7."),
+                Finding("person.posture", "warning", "posture RULA 6 of 7", "The posture scores RULA 6 of 7.", "human"),
+            ]
+        ),
     )

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from liftopt.assessment.finding import Assessment, Finding
 from liftopt.cli import main
 from liftopt.errors import InputError, SolverError
 from liftopt.scenario import Scenario, load_scenario
@@ -21,47 +22,71 @@ SCRIPT = Path(__file__).parents[1] / "scripts" / "solve.py"
 
 
 class FakeLift(ModuleType):
-    """Stands for liftopt.lift: writes what it must, and records what it was asked."""
+    """Stands for liftopt.lift and the writer: writes what it must, and records what it was asked."""
 
     def __init__(self, solution: SimpleNamespace) -> None:
         super().__init__("liftopt.lift")
         self.solution, self.raises = solution, None
-        self.asked: list[tuple[Scenario, Path]] = []
+        self.asked: list[Scenario] = []
+        self.saved: list[Path] = []
+        self.aside = ""  # folder within the one asked for that an iterate goes to
 
-    def lift(self, scenario: Scenario, *, out: Path, progress: Any) -> SimpleNamespace:  # noqa: D102
-        assert progress is None or callable(progress)
-        self.asked.append((scenario, out))
+    def lift(self, scenario: Scenario, *, progress: Any) -> SimpleNamespace:  # noqa: D102
+        assert callable(progress)
+        self.asked.append(scenario)
         if self.raises is not None:
             raise self.raises
-        (out / "solution.nc").write_text("new")
         return self.solution
+
+    def save(self, solution: SimpleNamespace, out: Path) -> Path:  # noqa: D102
+        assert solution is self.solution
+        self.saved.append(out)
+        (out / self.aside).mkdir(exist_ok=True)
+        (out / self.aside / "solution.nc").write_text("new")
+        return out / self.aside
 
 
 @pytest.fixture
 def lift(solution: SimpleNamespace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FakeLift:
     fake = FakeLift(solution)
     monkeypatch.setitem(sys.modules, "liftopt.lift", fake)
+    monkeypatch.setattr("liftopt.result_writer.save", fake.save)
+    monkeypatch.setattr("liftopt.summary.between_knots", lambda solution: solution)
     monkeypatch.chdir(tmp_path)
     return fake
 
 
 def test_solve_without_arguments_solves_table5_into_results(lift: FakeLift, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["solve"]) == 0
-    assert lift.asked == [(load_scenario("table5"), Path("results/table5"))]
+    assert (lift.asked, lift.saved) == ([load_scenario("table5")], [Path("results/table5")])
     assert Path("results/table5/solution.nc").exists()
     out, err = capsys.readouterr()
-    assert "table5: solved and verified" in out
+    assert out.startswith("table5: WARNING for the person\n")
+    assert "Solve: solved and verified" in out
+    assert "joint torques" not in out
     assert err == ""
 
 
 def test_json_is_one_object_and_nothing_else(lift: FakeLift, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["solve", "table5_near", "--json", "--out", "deep/er", "--set", "table.mass=3", "--set", "name=heavy"]
     assert main(arguments) == 0
-    scenario, out = lift.asked[0]
+    scenario, out = lift.asked[0], lift.saved[0]
     assert (scenario.name, scenario.table.mass, scenario.task.standing_distance) == ("heavy", 3.0, 1.7)
     assert out == Path("deep/er")
     summary = json.loads(capsys.readouterr().out)
     assert (summary["solved"], summary["exit_status"], summary["out"]) == (True, 0, "deep/er")
+    assert summary["assessment"] == lift.solution.assessment.plain()
+    assert "deep/er/solution.nc" in summary["files"]
+
+
+def test_details_add_findings_and_tables(lift: FakeLift, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["solve"]) == 0
+    short = capsys.readouterr().out
+    assert main(["solve", "--details"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(short)
+    for title in ("All findings", "Human joint torques", "Starts", "Verification: all passed"):
+        assert title in out
 
 
 def _error_line(capsys: pytest.CaptureFixture[str]) -> str:
@@ -80,7 +105,7 @@ def _error_line(capsys: pytest.CaptureFixture[str]) -> str:
         (["--set", "robot.model=hal"], "robot.model = 'hal': must be"),
         (["nosuch.toml"], "nosuch.toml: no such file"),
         (["two\nlines.toml"], "two lines.toml: no such file"),
-        (["."], ".: is not a file"),
+        (["."], ".: is not a file, nor a result folder with a scenario.toml"),
         (["--out", "a_file"], "--out = 'a_file': cannot be written: Not a directory"),
         (["--out", "a_file/below"], "--out = 'a_file/below': cannot be written: Not a directory"),
         (["--out", "x" * 300], "cannot be written: File name too long"),
@@ -147,18 +172,26 @@ def test_failure_as_json_names_its_kind(lift: FakeLift, capsys: pytest.CaptureFi
     assert json.loads(capsys.readouterr().out)["error"]["key"] == "table.mass"
 
 
-def test_unsolved_is_exit_3_with_the_reason_and_the_saved_iterate(
-    lift: FakeLift, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("aside", ["", "unsolved"])
+def test_unsolved_is_exit_3_with_the_reason_and_where_the_iterate_is_and_no_tables(
+    lift: FakeLift, capsys: pytest.CaptureFixture[str], aside: str
 ) -> None:
-    lift.solution.solved, lift.solution.status = False, "not converged: time limit"
+    lift.solution.solved, lift.solution.status, lift.aside = False, "not converged: time limit", aside
     assert main(["solve"]) == 3
     out, err = capsys.readouterr()
-    assert "NOT SOLVED" in out
-    assert err == (
-        "liftopt: error: no verified solution: not converged: time limit; "
-        "the best iterate is in results/table5, marked as such\n"
-    )
-    assert Path("results/table5/solution.nc").exists()
+    assert out == ""
+    first, last = err.splitlines()
+    assert first == "liftopt: error: no verified solution: not converged: time limit"
+    where = "results/table5/unsolved; the solved result" if aside else "results/table5, marked as such"
+    assert f"is in {where}" in last
+    assert (Path("results/table5") / aside / "solution.nc").exists()
+    assert main(["solve", "--json"]) == 3
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["solved"], summary["out"]) == (False, str(Path("results/table5") / aside))
+    assert main(["solve", "--details"]) == 3
+    out = capsys.readouterr().out
+    assert "Starts" in out
+    assert "joint torques" not in out
 
 
 def test_a_reader_that_has_seen_enough_is_no_error(lift: FakeLift, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -170,7 +203,9 @@ def test_a_reader_that_has_seen_enough_is_no_error(lift: FakeLift, monkeypatch: 
 
 
 def test_text_that_the_terminal_cannot_show_is_no_error(lift: FakeLift, monkeypatch: pytest.MonkeyPatch) -> None:
-    lift.solution.notes = ("précis",)
+    lift.solution.assessment = Assessment.of(
+        [*lift.solution.assessment, Finding("person.note", "caution", "précis", "A précis.")]
+    )
     with Path("out.txt").open("w", encoding="ascii") as stdout:
         monkeypatch.setattr(sys, "stdout", stdout)
         assert main(["solve"]) == 0
@@ -191,14 +226,6 @@ def test_crosscheck_passes_its_verdict_on(monkeypatch: pytest.MonkeyPatch, capsy
     assert main(["crosscheck", "--samples", "3"]) == 3
     assert asked == [(7, 0), (3, 0)]
     assert capsys.readouterr().out == "the table\nthe table\n"
-
-
-@pytest.mark.parametrize("arguments", [[], ["solv"], ["solve", "--sett", "a=1"], ["solve", "a", "b"]])
-def test_wrong_usage_is_exit_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as caught:
-        main(arguments)
-    assert caught.value.code == 2
-    assert "usage: liftopt" in capsys.readouterr().err
 
 
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
@@ -229,7 +256,7 @@ def test_a_solve_imports_nothing_that_it_does_not_need() -> None:
     """Each of these takes longer to import than a lift to solve."""
     code = """
 import sys
-import liftopt.lift, liftopt.summary, liftopt.summary_text, h5netcdf
+import liftopt.lift, liftopt.summary, liftopt.assessment.text, h5netcdf
 from liftopt.scenario import load_scenario
 from liftopt.scene import agents_of, object_of
 agents_of(load_scenario()), object_of(load_scenario())

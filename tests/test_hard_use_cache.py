@@ -191,7 +191,7 @@ with interrupts():
         except KeyboardInterrupt:
             print("swallowed", flush=True)
 """
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False)
     assert (run.returncode, run.stdout, run.stderr) == (130, "swallowed\n", "liftopt: error: interrupted\n")
 
 

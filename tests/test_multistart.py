@@ -22,7 +22,7 @@ class Slow:
     """A solver that takes a while and returns its start."""
 
     busy: threading.Lock = field(default_factory=threading.Lock)
-    deadlines: list[float] = field(default_factory=list)
+    given: list[tuple[float, int | None]] = field(default_factory=list)
     rivals: dict[float, SolverResult | None] = field(default_factory=dict)
     converges: bool = True
 
@@ -34,11 +34,12 @@ class Slow:
         warm: object = None,
         problem: object = None,
         rival: SolverResult | None = None,
+        most: int | None = None,
     ) -> SolverResult:
         """Wait for as long as the start says."""
         assert self.busy.acquire(blocking=False), "two threads use one solver"
         time.sleep(float(x0[0]))
-        self.deadlines.append(deadline)
+        self.given.append((deadline, most))
         self.rivals[float(x0[0])] = rival
         self.busy.release()
         return SolverResult(x0, Multipliers(x0, x0), float(x0[0]), 1, self.converges, STOPPED, 0.0, 0.0)
@@ -48,9 +49,9 @@ class Slow:
 def test_results_come_in_the_order_of_the_starts(workers: int) -> None:
     starts = [Start(f"start {i}", np.array([wait])) for i, wait in enumerate((0.03, 0.0, 0.02, 0.0, 0.01, 0.0))]
     solvers = [Slow() for _ in range(workers)]
-    results = list(solve_all(solvers, starts, time.monotonic() + 60.0))
+    results = list(solve_all(solvers, starts, np.inf))
     assert [result.objective for result in results] == [float(start.x[0]) for start in starts]
-    assert all(solver.deadlines for solver in solvers)
+    assert all(solver.given for solver in solvers)
 
 
 @pytest.mark.parametrize("workers", [1, 2, 4])
@@ -60,18 +61,18 @@ def test_the_first_optimum_is_the_rival_of_all_that_join_moves(workers: int) -> 
     starts.append(Start("naive", np.array([0.01])))
     for converges in (True, False):
         solvers = [Slow(converges=converges) for _ in range(workers)]
-        list(solve_all(solvers, starts, time.monotonic() + 60.0))
+        list(solve_all(solvers, starts, np.inf))
         given = {x: r for solver in solvers for x, r in solver.rivals.items()}
         assert given[0.03] is given[0.01] is None
         assert all((r.objective, r.converged) == (0.03, converges) for r in (given[0.0], given[0.02]) if r)
         assert given[0.0] and given[0.02]
 
 
-def test_one_start_of_several_may_not_take_all_the_time() -> None:
-    solver, now = Slow(), time.monotonic()
-    list(solve_all([solver], [Start("a", np.zeros(1)), Start("b", np.zeros(1))], now + 100.0))
-    list(solve_all([solver], [Start("a", np.zeros(1))], now + 100.0))
-    np.testing.assert_allclose(np.array(solver.deadlines) - now, [50.0, 50.0, 100.0], atol=1.0)
+def test_each_start_gets_its_share_in_iterations_and_all_the_time() -> None:
+    """A share of the time that is left would make what is found depend on how busy the machine is."""
+    solver, late = Slow(), np.inf
+    list(solve_all([solver], [Start("a", np.zeros(1)), Start("b", np.zeros(1))], late, most=7))
+    assert solver.given == [(late, 7)] * 2
 
 
 @pytest.mark.parametrize("tries", [0, 6])

@@ -46,7 +46,7 @@ def _served_until_interrupted(words: list[str]) -> int:
                 served.send_signal(signal.SIGINT)
                 break
         served.stdout.read()
-        return served.wait(timeout=30)
+        return served.wait(timeout=300)  # only so that a hang fails
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,7 +51,7 @@ def solve() -> Solve:
     scenario, spline = load_scenario("table5"), RestToRestSpline(N)
     team = Team.of(agents_of(scenario), object_of(scenario))
     problem = Problem(team, task_of(scenario), spline.mesh())
-    deadline = time.monotonic() + 60.0
+    deadline = np.inf
     start = posture_starts(problem, 1, 0, deadline)[0]
     result = Ipopt(problem).solve(start.x, deadline=deadline)
     assert result.converged
@@ -196,7 +195,7 @@ def test_a_solver_that_was_fed_a_wrong_robot_is_found_out(solve: Solve) -> None:
     human, robot, table = team.topologies
     wrong = replace(robot, entries=robot.entries * 1.01)
     fooled = replace(solve.problem, team=replace(team, topologies=(human, wrong, table)))
-    result = Ipopt(fooled).solve(solve.result.x, deadline=time.monotonic() + 60.0)
+    result = Ipopt(fooled).solve(solve.result.x, deadline=np.inf)
     verification = solve.verify(result)
     assert not verification.passed
     assert {"closure at the knots", "objective by Pinocchio"} <= _failed(verification)

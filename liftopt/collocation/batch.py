@@ -44,8 +44,9 @@ class Batch:
         weights, terms = self.problem.mesh.weights, []
         for i, (y, c) in enumerate(zip(self._knots(x), self._outputs(x), strict=True)):
             c_weight, y_weight = self.problem.weights(i)
-            squares = c[:, : len(c_weight)] ** 2 @ c_weight + y**2 @ y_weight
-            terms.append(squares.reshape(len(x), -1) @ weights)
+            # Not by a library of linear algebra, which rounds as the processor has it: starts are ranked by this.
+            squares = np.einsum("ij,j->i", c[:, : len(c_weight)] ** 2, c_weight) + np.einsum("ij,j->i", y**2, y_weight)
+            terms.append(np.einsum("ij,j->i", squares.reshape(len(x), -1), weights))
         return np.array(terms)
 
     def rows(self, x: Array) -> Array:

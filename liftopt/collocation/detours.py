@@ -63,7 +63,7 @@ def detours(
     if not by:
         return []
     layout, agents = problem.layout, problem.team.agents
-    here = problem.mesh.basis[0] @ x[layout.control]
+    here = np.einsum("kc,cn->kn", problem.mesh.basis[0], x[layout.control])
     share = quintic(np.minimum(1.0, np.minimum(problem.mesh.phase, 1.0 - problem.mesh.phase) / THERE))
     jobs = [(n, leader) for n in range(len(by)) for leader in range(len(agents))]
     leads = np.zeros((len(jobs), here.shape[1]), dtype=bool)

@@ -69,11 +69,13 @@ class Elastic:
         x: (n_x,) unknowns of the problem.
         violations: what it breaks, the costliest first; empty if nothing.
         converged: whether that is a local optimum.
+        iterations: that it took to find.
     """
 
     x: Array
     violations: tuple[Violation, ...]
     converged: bool
+    iterations: int
 
     @property
     def possible(self) -> bool:
@@ -81,18 +83,18 @@ class Elastic:
         return self.converged and not self.violations
 
 
-def elastic(problem: Problem, x0: Array, deadline: float) -> Elastic:
-    """Return the motion near ``x0`` (n_x,) that breaks as little as possible.
+def elastic(problem: Problem, x0: Array, deadline: float, most: int = MAX_ITERATIONS) -> Elastic:
+    """Return the motion near ``x0`` (n_x,) that breaks as little as possible, after ``most`` iterations at the latest.
 
     Raises:
         SolverError: IPOPT cannot run.
     """
     soft = SoftProblem(problem.team, problem.task, problem.mesh, problem.posture_weight)
     start = soft.start(x0)
-    result = Ipopt(soft, IpoptOptions(TOLERANCE, MAX_ITERATIONS, 1.0)).solve(start, deadline=deadline)
+    result = Ipopt(soft, IpoptOptions(TOLERANCE, MAX_ITERATIONS, 1.0)).solve(start, deadline=deadline, most=most)
     x, slack = np.split(result.x, [problem.layout.n_x])
     lower, upper = problem.bounds()
-    return Elastic(np.clip(x, lower, upper), soft.violations(slack), result.converged)
+    return Elastic(np.clip(x, lower, upper), soft.violations(slack), result.converged, result.iterations)
 
 
 @dataclass(frozen=True, eq=False)

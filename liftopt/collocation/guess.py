@@ -91,6 +91,7 @@ def repertoire(
     say: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     seeds: int = 0,
+    rounds: int = ROUNDS,
 ) -> Repertoire | None:
     """Return what postures allow; None if none was found at one end.
 
@@ -102,6 +103,7 @@ def repertoire(
         say: hears of progress.
         postures: solver for the problem's team, to be used again; None: one is made.
         seeds: postures that are searched from, at least; fewer than moves or ``SEEDS`` are not.
+        rounds: of seeds, after which an end without a posture is given up.
     """
     task, rng = problem.task, np.random.default_rng(seed)
     if postures is None:
@@ -110,7 +112,7 @@ def repertoire(
         postures = PostureSolver(problem.team, task, say)
         deadline += time.monotonic() - began
     count = max(SEEDS, most, seeds)
-    for attempt in range(ROUNDS):
+    for attempt in range(rounds):
         if time.monotonic() > deadline:
             break
         if say:
@@ -129,9 +131,10 @@ def posture_starts(
     deadline: float,
     say: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
+    rounds: int = ROUNDS,
 ) -> list[Start]:
     """Return up to ``count`` starts from pairs of postures, the most promising first; see ``repertoire``."""
-    found = repertoire(problem, count, seed, deadline, say, postures)
+    found = repertoire(problem, count, seed, deadline, say, postures, rounds=rounds)
     return found.starts(problem, count) if found else []
 
 

@@ -2,7 +2,8 @@
 
 Levenberg's and Marquardt's method on the grasp gaps, in its dual form: the steps have the least norm, so a posture
 stays near its seed, and the systems to solve are as small as the number of gaps. Joints at a limit that a step
-would cross are held for that step.
+would cross are held for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the
+processor has it, and its threads take longer to wake than such small systems to solve.
 """
 
 from __future__ import annotations
@@ -127,6 +128,20 @@ class InverseKinematics:
         return lower, upper
 
 
+def _solved_each(systems: Array, right: Array) -> Array:
+    """Return the solutions (B, m) of positive definite ``systems`` (B, m, m), by Gaussian elimination in order."""
+    matrix, x = systems.copy(), right.copy()
+    size = x.shape[1]
+    for k in range(size):
+        factors = matrix[:, k + 1 :, k] / matrix[:, k, None, k]
+        matrix[:, k + 1 :, k:] -= factors[:, :, None] * matrix[:, None, k, k:]
+        x[:, k + 1 :] -= factors * x[:, k, None]
+    for k in reversed(range(size)):
+        x[:, k] /= matrix[:, k, k]
+        x[:, :k] -= matrix[:, :k, k] * x[:, k, None]
+    return x
+
+
 def _least_norm_step(slopes: Array, left: Array, damping: Array, below: Array, above: Array) -> Array:
     """Return the damped step (B, n) of least norm that closes ``left``, within the room ``below`` and ``above``."""
     free, size = (below + above > 0).astype(float), left.shape[1]
@@ -135,9 +150,9 @@ def _least_norm_step(slopes: Array, left: Array, damping: Array, below: Array, a
     step = np.zeros_like(below)
     for _ in range(2):
         held = slopes * free[:, None, :]
-        system = held @ slopes.transpose(0, 2, 1)
+        system = np.einsum("bij,bkj->bik", held, slopes)
         system[:, range(size), range(size)] += off
-        step = -(held.transpose(0, 2, 1) @ np.linalg.solve(system, left[:, :, None]))[:, :, 0]
+        step = -np.einsum("bij,bi->bj", held, _solved_each(system, left))
         crossing = (free > 0) & (((below <= 0) & (step < 0)) | ((above <= 0) & (step > 0)))
         if not crossing.any():
             break

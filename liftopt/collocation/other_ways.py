@@ -42,7 +42,7 @@ def other_ways(
         deadline: ``time.monotonic`` value past which inverse kinematics stops.
     """
     layout, agents = problem.layout, problem.team.agents
-    here = problem.mesh.basis[0] @ x[layout.control]
+    here = np.einsum("kc,cn->kn", problem.mesh.basis[0], x[layout.control])
     middle = len(here) // 2
     way = _followed(problem, kinematics, here, np.repeat([0, middle, len(here) - 1], SEEDS), rng, deadline)
     if not way.size:

@@ -55,12 +55,14 @@ class Niosh:
     Attributes:
         load: what the person carries on average over the lift: vertical hand force / g [kg].
         largest_load: the same at its largest [kg].
+        largest_load_at: when that is [s].
         origin, destination: the equation at either end.
         hand_speed: fastest speed of the hand [m/s].
     """
 
     load: float
     largest_load: float
+    largest_load_at: float
     origin: NioshTerms
     destination: NioshTerms
     hand_speed: float
@@ -90,7 +92,10 @@ def niosh(solution: Solution) -> Niosh:
     travel = abs(float(ends[1, 2] - ends[0, 2])) * 100.0
     speed = np.linalg.norm(np.gradient(human.grasp_position, solution.time, axis=0), axis=1)
     mean = float(np.trapezoid(load, solution.time) / (solution.time[-1] - solution.time[0]))
-    return Niosh(mean, float(load.max()), _at(ends[0], travel), _at(ends[1], travel), float(speed.max()))
+    k = int(np.argmax(load))
+    return Niosh(
+        mean, float(load[k]), float(solution.time[k]), _at(ends[0], travel), _at(ends[1], travel), float(speed.max())
+    )
 
 
 def niosh_terms(horizontal: float, vertical: float, travel: float, asymmetry: float) -> NioshTerms:

@@ -49,9 +49,7 @@ def read_c3d(path: Path) -> Recording:
     named = header.last - header.first + 1
     if frames != stated or (named != stated and 0 < named < LAST_COUNTED - header.first):
         of_header = stated if frames != stated else named
-        notes.append(
-            f"the header says {of_header} frames, the file holds {frames}: it is cut short or mislabelled"
-        )
+        notes.append(f"the header says {of_header} frames, the file holds {frames}: it is cut short or mislabelled")
     rate = _rate(header, parameters, notes)
     analog, more = _analog(raw, layout, rate, parameters, unsigned)
     units = next(iter(parameters.texts("POINT", "UNITS")), "")

@@ -102,8 +102,8 @@ class C3dParameters:
     def _take(self, content: bytes) -> bool:
         """Take in one record; return whether another follows."""
         at = self.end
-        if at + 4 > len(content):
-            self.damage = "the file ends within them"
+        if at + 4 > len(content):  # they may end with the last block, without a zero behind them
+            self.damage = "their end is missing" if at > len(content) or any(content[at:]) else ""
             return False
         length, number = struct.unpack_from("bb", content, at)
         length = abs(length)  # negative: locked

@@ -224,23 +224,23 @@ def _scale(recording: Recording, units: str | None, notes: list[str]) -> float:
         allowed = '"m", "cm" or "mm"'
         raise InputError("units", NO_VALUE, f"{recording.source} states no unit of length; the mapping must: {allowed}")
     if of_file is None:
-        allowed = f"{', '.join(METRES)} are; the mapping may state the right one (units = \"mm\") and wins"
+        allowed = f'{", ".join(METRES)} are; the mapping may state the right one (units = "mm") and wins'
         raise InputError(recording.source, stated, f"is a unit of length that is not known; {allowed}")
     return of_file
 
 
 def _check_size(recording: Recording, scale: float, units: str | None) -> None:
-    with np.errstate(invalid="ignore"):
-        seen = recording.points[~np.isnan(recording.points).all(axis=(1, 2))]
-        seen = seen[:: max(len(seen) // 200, 1)]
-        distances = np.linalg.norm(seen - np.nanmedian(seen, axis=1, keepdims=True), axis=2)
-    typical = float(np.nanmedian(distances))
+    seen = recording.points[~np.isnan(recording.points).all(axis=(1, 2))]
+    if not len(seen):
+        return  # whatever needs a marker names it
+    seen = seen[:: max(len(seen) // 200, 1)]
+    typical = float(np.nanmedian(np.linalg.norm(seen - np.nanmedian(seen, axis=1, keepdims=True), axis=2)))
     key, value = ("units", units) if units else (recording.source, recording.units)
     if not SMALLEST_CLOUD <= typical * scale <= LARGEST_CLOUD:
         fitting = [name for name in ("m", "cm", "mm") if SMALLEST_CLOUD <= typical * METRES[name] <= LARGEST_CLOUD]
         remedy = ""
         if fitting:
-            remedy = f"; the mapping's units = \"{fitting[0]}\" would make it {typical * METRES[fitting[0]]:.2f} m"
+            remedy = f'; the mapping\'s units = "{fitting[0]}" would make it {typical * METRES[fitting[0]]:.2f} m'
         raise InputError(
             key,
             value,

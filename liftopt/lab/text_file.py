@@ -244,9 +244,7 @@ def _stated_count(text: str | None) -> int | None:
         return None
 
 
-def number_table(
-    lines: list[Line], names: tuple[str, ...], group: int = 0
-) -> tuple[Array, list[Line], list[str]]:
+def number_table(lines: list[Line], names: tuple[str, ...], group: int = 0) -> tuple[Array, list[Line], list[str]]:
     """Return the numbers of the lines that hold any, a row each, the lines used, and notes.
 
     A last line that ends early was cut off while it was written: it is left out and noted.

@@ -14,6 +14,8 @@ from liftopt.multibody.dh import Array, BodyInertia, rotation_x, rotation_z, tra
 from liftopt.multibody.sources import RETHINK, Source
 
 SOURCE: Source = RETHINK
+PAYLOAD = 4.0  # kg, gripper included; the description has none
+PAYLOAD_SOURCE = Source("Rethink Robotics, Sawyer's published specification (4 kg)", "unverified")
 
 
 @dataclass(frozen=True)

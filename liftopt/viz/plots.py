@@ -73,7 +73,11 @@ PLOTS: tuple[Plot, ...] = (
         "Joint torques of the robot with the limits they were held to. Predicted side of Figs. 17 and 18 of the paper.",
         robot_torques,
     ),
-    Plot("object_motion", "Height, tilt and speed of the object.", object_motion),
+    Plot(
+        "object_motion",
+        "Height of the object's centre (a scenario's heights are those of the edges held), its tilt and speed.",
+        object_motion,
+    ),
     Plot("ground_reaction", "What the ground does to the person.", ground_reaction),
     Plot("strength_used", "Share of the person's strength that each joint uses over the lift.", strength_used),
     Plot(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from liftopt.checks import FINER
 from liftopt.interpolation import refined
 from liftopt.solution import Solution
-
-FACTOR = 10
 
 
 @dataclass(frozen=True)
@@ -25,6 +24,6 @@ class Lift:
     factor: int
 
     @staticmethod
-    def of(solution: Solution, factor: int = FACTOR) -> Lift:
+    def of(solution: Solution, factor: int = FINER) -> Lift:
         """Return the lift of ``solution``."""
         return Lift(solution, refined(solution, factor), factor)

@@ -70,7 +70,7 @@ def object_motion(lift: Lift) -> Figure:
     figure, grid = panels(3, height=1.1)
     height, turn, speed = (line[0] for line in grid)
     draw(height, solution.time, pose[:, 2], LINES[0], knots=lift.factor)
-    height.set(title=f"Height of the {solution.held.name}'s centre of mass", ylabel="height [m]")
+    height.set(title=f"Height of the {solution.held.name}'s centre of mass", ylabel="height of centre [m]")
     limits = solution.scenario.limits
     for column, line, name, limit in (
         (4, LINES[0], "pitch, + the robot's side down", limits.table_pitch_deg),

@@ -6,21 +6,21 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import liftopt
-from liftopt.ergonomics.assessment import Assessment, assess
+from liftopt.assessment.finding import Finding
+from liftopt.assessment.joints import NEAR_LIMIT
+from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.solution import Solution
-from liftopt.summary import GRAVITY, shares, summary_dict
-from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
+from liftopt.summary import summary_dict
+from liftopt.viz.anatomy import human_curves, robot_curves
 from liftopt.viz.plots_comparison import experiment_tables
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_figures import inline_comparisons, inline_figures
-from liftopt.viz.report_findings import NEAR_LIMIT, findings
 from liftopt.viz.report_tables import Headline, check_rows, joint_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
 
@@ -29,6 +29,13 @@ if TYPE_CHECKING:
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
+HEADLINES = {
+    "person.strength": "of the person's strength",
+    "person.load_share": "of the load is on the person at most",
+    "person.grasp_force": "on the person's hand at most",
+    "robot.torque": "of a robot joint's torque limit",
+    "person.posture": "RULA posture score at worst; 7 is bad",
+}
 
 
 def write_report(solution: Solution, file: Path, experiment: Experiment | None = None) -> None:
@@ -50,7 +57,7 @@ def write_report(solution: Solution, file: Path, experiment: Experiment | None =
 def report_html(solution: Solution, experiment: Experiment | None = None) -> str:
     """Return the report as one HTML page that needs nothing else; with what was recorded, if it was."""
     lift = Lift.of(solution)
-    dense, ergonomics = lift.dense, assess(lift.dense)
+    dense, ergonomics = lift.dense, ergonomics_of(lift.dense)
     human = human_curves(dense.agents[0])
     robot = robot_curves(dense.agents[1], solution.scenario.robot.model)
     summary = summary_dict(solution)
@@ -62,8 +69,8 @@ def report_html(solution: Solution, experiment: Experiment | None = None) -> str
         "solution": solution,
         "scenario": solution.scenario,
         "summary": summary,
-        "findings": findings(dense, human, robot, ergonomics),
-        "headlines": _headlines(dense, human, robot, ergonomics),
+        "assessment": solution.assessment,
+        "headlines": _headlines(solution),
         "figures": {
             name: {"svg": Markup(figure.svg), "caption": figure.caption}
             for name, figure in (figures | compared).items()
@@ -84,34 +91,22 @@ def report_html(solution: Solution, experiment: Experiment | None = None) -> str
     return _environment().get_template(TEMPLATE).render(context)
 
 
-def _headlines(
-    dense: Solution, human: tuple[JointCurve, ...], robot: tuple[JointCurve, ...], ergonomics: Assessment
-) -> list[Headline]:
-    share = shares(dense.agents)[0]
-    share = share[np.isfinite(share)]
-    force = np.linalg.norm(dense.agents[0].grasp_force, axis=1)
-    k, grand = int(np.argmax(force)), ergonomics.rula.grand
-    carried = Headline("\N{EM DASH}", "of the load is on the person", "there is no load to share")
-    if len(share):
-        remark = f"on average; between {100 * share.min():.0f} and {100 * share.max():.0f} % along the way"
-        carried = Headline(f"{100 * share.mean():.0f} %", "of the load is on the person", remark)
-    return [
-        _largest_share("of the person's strength", human, dense),
-        carried,
-        Headline(
-            f"{force[k]:.0f} N",
-            "on the person's hand at most",
-            f"at {dense.time[k]:.2f} s; {force[k] / GRAVITY:.1f} kg",
-        ),
-        _largest_share("of a robot joint's torque limit", robot, dense),
-        Headline(f"{grand.max()} of 7", "RULA posture score at worst", f"{grand.min()} at best; 1 is good, 7 is bad"),
-    ]
+def _headlines(solution: Solution) -> list[Headline]:
+    """Return the numbers that matter most, as the assessment has them; of what is no solution it has none."""
+    told = []
+    for code, label in HEADLINES.items():
+        finding = next((finding for finding in solution.assessment if finding.code == code), None)
+        if finding is not None and finding.value is not None:
+            told.append(Headline(_number(finding), label, finding.message))
+    return told
 
 
-def _largest_share(label: str, curves: tuple[JointCurve, ...], dense: Solution) -> Headline:
-    worst = max(curves, key=lambda curve: float(curve.share.max()))
-    k = int(np.argmax(worst.share))
-    return Headline(f"{100 * worst.share[k]:.0f} %", label, f"{worst.label} at {dense.time[k]:.2f} s")
+def _number(finding: Finding) -> str:
+    """Return a value as a share of its limit; what has none is a share already, or a score."""
+    value = finding.value or 0.0
+    if finding.unit in ("N", "of 7"):
+        return f"{value:.0f} {finding.unit}"
+    return f"{100 * value / (finding.limit or 1.0):.0f} %"
 
 
 def _environment() -> Environment:

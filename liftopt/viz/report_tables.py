@@ -15,8 +15,6 @@ from liftopt.scene import subject_of
 from liftopt.solution import Solution
 from liftopt.viz.anatomy import JointCurve
 
-AT_KNOTS, BETWEEN = " at the knots", " between knots"
-
 
 @dataclass(frozen=True)
 class Headline:
@@ -57,24 +55,18 @@ def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
 
 
 def check_rows(summary: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return a row a requirement: its worst value at the knots and between them, the limit, and whether it holds."""
-    checks = {check["name"]: check for check in summary["verification"]["checks"]}
-    rows = []
-    for name, check in checks.items():
-        if name.endswith(BETWEEN) and _knot_name(name, checks) is not None:
-            continue
-        between = checks.get(name.removesuffix(AT_KNOTS) + BETWEEN)
-        rows.append(
-            {
-                "name": name,
-                "unit": check["unit"],
-                "value": _short(check["value"]),
-                "limit": "reported only" if check["limit"] is None else _short(check["limit"]),
-                "between": "" if between is None else _between(between),
-                "where": check["where"],
-                "passed": check["passed"] and (between is None or between["passed"]),
-            }
-        )
+    """Return a row a requirement: its worst value, the limit, and whether it holds; without a limit nothing can."""
+    rows = [
+        {
+            "name": check["name"],
+            "unit": check["unit"],
+            "value": _short(check["value"]),
+            "limit": _short(check["limit"]),
+            "where": check["where"],
+            "state": _state(check["passed"], check["limit"]),
+        }
+        for check in summary["verification"]["checks"]
+    ]
     return [*rows, _kkt_row(summary["verification"])]
 
 
@@ -90,11 +82,6 @@ def source_rows(scenario: Scenario) -> list[dict[str, Any]]:
     ]
 
 
-def _between(check: dict[str, Any]) -> str:
-    """Return the worst value between knots, with its limit where it has one."""
-    return _short(check["value"]) + ("" if check["limit"] is None else f" (allowed {_short(check['limit'])})")
-
-
 def _kkt_row(verification: dict[str, Any]) -> dict[str, Any]:
     error, limit = verification["kkt_error"], verification["kkt_tolerance"]
     return {
@@ -102,19 +89,20 @@ def _kkt_row(verification: dict[str, Any]) -> dict[str, Any]:
         "unit": "",
         "value": _short(error),
         "limit": _short(limit),
-        "between": "",
         "where": "",
-        "passed": error is not None and error <= limit,
+        "state": _state(error is not None and error <= limit, limit),
     }
+
+
+def _state(passed: bool, limit: float | None) -> str:
+    """Return ``"ok"``, ``"fails"``, or ``"no limit"`` for what is only told."""
+    if limit is None:
+        return "no limit"
+    return "ok" if passed else "fails"
 
 
 def _quantities(scenario: Scenario) -> tuple[Quantity, ...]:
     return subject_quantities(subject_of(scenario.human))
-
-
-def _knot_name(name: str, checks: dict[str, Any]) -> str | None:
-    stem = name.removesuffix(BETWEEN)
-    return next((other for other in (stem + AT_KNOTS, stem) if other in checks), None)
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

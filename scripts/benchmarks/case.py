@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
-from liftopt.collocation.guess import blend
+from liftopt.collocation.guess import blend, naive_start
 from liftopt.collocation.postures import Posture
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Solver, SolverResult
@@ -52,6 +52,10 @@ class Case:
             for coordinates, force in ((ends.first, ends.first_force), (ends.last, ends.last_force))
         )
         return Case(scenario, spline, problem, blend(problem, first, last))
+
+    def from_zero(self) -> Case:
+        """Return the case with the paper's guess as its start: control points 0, forces 10 N."""
+        return replace(self, start=naive_start(self.problem).x)
 
     def solver(self, name: str) -> Solver:
         """Return a new solver for the problem, set up as ``liftopt solve`` does."""

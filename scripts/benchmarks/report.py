@@ -20,8 +20,12 @@ from benchmarks.goals import GOALS, Row
 
 RIVALS = {
     "virtual_machine": "the same NLP, CasADi's virtual machine, IPOPT",
-    "snopt": "the same NLP, SNOPT in Drake",
-    "moco": "the same lift in OpenSim Moco",
+    "snopt_zero": "the paper's size through SNOPT, zero guess",
+    "snopt_small": "the paper's size through SNOPT, our start",
+    "snopt": "the same NLP, SNOPT in Drake, our start",
+    "moco": "the same lift in OpenSim Moco, our start",
+    "moco_naive": "the same lift in OpenSim Moco, its naive guess",
+    "moco_fine": "the same lift in OpenSim Moco, our tolerance",
     "floor": "Pinocchio's computeRNEADerivatives, all knots",
 }
 PACKAGES = ("liftopt", "casadi", "pin", "numpy", "scipy", "drake", "opensim")
@@ -64,12 +68,13 @@ def show(run: dict[str, Any], console: Console) -> None:
         goals.add_row(goal.title, _figure(row["value"], goal.unit), _figure(row["details"].get(PROCESSOR), "ms"),
                       _figure(goal.goal, goal.unit),
                       _figure(goal.beyond, goal.unit), mark, row["note"])  # fmt: skip
-    console.print(goals)
+    if goals.row_count:
+        console.print(goals)
     if rivals := [key for key in RIVALS if key in run["rows"]]:
         table = Table("", "measured", "by IPOPT here", "by banded here", "note", title="Others, in the same run")
         for key in rivals:
             row, ratio = run["rows"][key], run["ratios"].get(key, {})
-            table.add_row(RIVALS[key], _figure(row["value"], "ms"), _times(ratio.get("ipopt")),
+            table.add_row(RIVALS[key], _figure(row["value"], "ms") or "-", _times(ratio.get("ipopt")),
                           _times(ratio.get("banded")), row["note"])  # fmt: skip
         console.print(table)
     for title, stages in run["profile_ms"].items():
@@ -111,12 +116,22 @@ def write(run: dict[str, Any], path: Path) -> None:
 def _ratios(rows: dict[str, Row]) -> dict[str, dict[str, float]]:
     """Return each time over that of one cold solve by ours: what is left when machine and load are taken out.
 
-    By processor time where both have it; all of them use one thread.
+    A rival is compared with ours on its very problem, start and tolerance; the others with the default lift at 1e-6, by
+    processor time where both have it.
     """
     units = {key: GOALS[key].unit if key in GOALS else "ms" for key in rows}
     found: dict[str, dict[str, float]] = {}
     for key, row in rows.items():
-        for ours in ("ipopt", "banded"):
+        beside: dict[str, dict[str, Any]] = row.details.get("beside", {})
+        for name, own in beside.items():
+            # Without an optimum on both sides there is nothing to compare. One that uses all cores has no ratio by
+            # processor time.
+            if row.value is not None and own["objective"] is not None:
+                ratio = row.value / own["median_ms"]
+                if PROCESSOR in row.details:
+                    ratio = row.details[PROCESSOR] / own[PROCESSOR]
+                found.setdefault(key, {})[name] = ratio
+        for ours in () if "beside" in row.details else ("ipopt", "banded"):
             reference = rows.get(ours, Row(None))
             if row.value is not None and reference.value is not None and key != ours and units[key] == "ms":
                 both = PROCESSOR in row.details and PROCESSOR in reference.details

@@ -21,13 +21,17 @@ from liftopt.collocation.problem import Problem
 
 Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
-# Room for a superbasic variable of every degree of freedom; the limits on iterations are out of the way.
+# Room for a superbasic variable of every degree of freedom; the limits on iterations are out of the way. On the lift at
+# the paper's size 50 updates of the Hessian took two thirds of the time that SNOPT's 10 took, 200 or a full Hessian
+# more; scaling the nonlinear rows as well (scale option 2), or a smaller objective, took half as long again.
 OPTIONS = {
+    "Hessian updates": 50,
     "Major optimality tolerance": 1e-6,
     "Major feasibility tolerance": 1e-6,
     "Superbasics limit": 1000,
-    "Major iterations limit": 5000,
-    "Iterations limit": 500000,
+    "Major iterations limit": 50000,
+    "Iterations limit": 5000000,
+    "Verify level": -1,
 }
 OBJECTIVE_SCALING = 0.1  # as for banded
 
@@ -71,11 +75,12 @@ def solve(problem: Problem, x0: Array, seconds: float, print_file: str = "") -> 
         constraints.linear.tocsr()[straight], constraints.lower[straight], constraints.upper[straight], x
     )
     program.AddCost(functions.objective, x)
-    for rows, columns, pattern in _knots(problem, np.flatnonzero(~is_linear)):
+    for group in _knots(problem, np.flatnonzero(~is_linear)):
+        rows = group.rows
         bound = program.AddConstraint(
-            functions.rows(rows, columns), constraints.lower[rows], constraints.upper[rows], x[columns]
+            functions.of(group), constraints.lower[rows], constraints.upper[rows], x[group.columns]
         )
-        bound.evaluator().SetGradientSparsityPattern(pattern)
+        bound.evaluator().SetGradientSparsityPattern(list(zip(*(at.tolist() for at in group.places), strict=True)))
     options = SolverOptions()
     for name, value in OPTIONS.items():
         options.SetOption(SnoptSolver.id(), name, value)
@@ -103,6 +108,21 @@ def solve(problem: Problem, x0: Array, seconds: float, print_file: str = "") -> 
     )
 
 
+@dataclass(frozen=True)
+class _Group:
+    """Rows of g, the unknowns that they depend on, and their part of the Jacobian.
+
+    Attributes:
+        rows, columns: of the Jacobian.
+        places: row and column within the group of every entry; entries: which of the Jacobian's it is.
+    """
+
+    rows: Index
+    columns: Index
+    places: tuple[Index, Index]
+    entries: Index
+
+
 class _Functions:
     """Our functions as Drake calls them: the objective first, with all of x, then the rows of each knot."""
 
@@ -125,16 +145,19 @@ class _Functions:
         self.inside += time.perf_counter() - began
         return answer
 
-    def rows(self, rows: Index, columns: Index) -> Any:
+    def of(self, group: _Group) -> Any:
         """Return the function of some rows of g, which depend on some of the unknowns alone."""
+        slopes = np.zeros((len(group.rows), len(group.columns)))
 
         def function(x: Any) -> Any:
             began = time.perf_counter()
             values = _plain(x)
-            if not np.array_equal(values, self._at[columns]):
+            if not np.array_equal(values, self._at[group.columns]):
                 raise RuntimeError("Drake asked for constraints at a point where it had not asked for the objective")
-            g = self._g[rows]
-            answer = g if x.dtype == float else _autodiff(g, self._jacobian[rows][:, columns].toarray())
+            answer = self._g[group.rows]
+            if x.dtype != float:
+                slopes[group.places] = self._jacobian[group.entries]
+                answer = _autodiff(answer, slopes)
             self.inside += time.perf_counter() - began
             return answer
 
@@ -149,7 +172,7 @@ class _Functions:
         self.evaluation += time.perf_counter() - began
         self.points += 1
         self._at, self._f, self._g, self._gradient = x, float(f), g.full().ravel(), gradient.full().T
-        self._jacobian = jacobian.sparse().tocsr()
+        self._jacobian = np.array(jacobian.nonzeros())
 
 
 def _plain(x: Any) -> Array:
@@ -165,10 +188,11 @@ def _autodiff(values: Array, slopes: Array) -> Any:
     return InitializeAutoDiff(values[:, None], slopes).ravel()
 
 
-def _knots(problem: Problem, rows: Index) -> list[tuple[Index, Index, list[tuple[int, int]]]]:
-    """Return the rows of each knot, the unknowns that they depend on, and the pattern of one by the other."""
+def _knots(problem: Problem, rows: Index) -> list[_Group]:
+    """Return the rows of each knot."""
     kinds = problem.nlp.jac_g.sparsity_out(1)
-    entries = sp.csc_matrix((np.ones(kinds.nnz()), kinds.row(), kinds.colind()), shape=kinds.shape).tocsr()
+    number = np.arange(1, kinds.nnz() + 1)  # a stored 0 would be dropped
+    entries = sp.csc_matrix((number, kinds.row(), kinds.colind()), shape=kinds.shape).tocsr()
     # The first and the last control point that a row depends on tell its knot, up to those at the ends.
     block = np.full(problem.layout.n_x, -1)
     for i, control in enumerate(problem.layout.control):
@@ -185,5 +209,5 @@ def _knots(problem: Problem, rows: Index) -> list[tuple[Index, Index, list[tuple
         part = entries[group]
         columns = np.unique(part.indices)
         local = part[:, columns].tocoo()
-        found.append((np.array(group), columns, list(zip(local.row.tolist(), local.col.tolist(), strict=True))))
+        found.append(_Group(np.array(group), columns, (local.row, local.col), local.data - 1))
     return found

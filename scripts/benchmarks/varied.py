@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.case import Case
 from benchmarks.goals import Row
-from benchmarks.scenarios import PATIENT, STARTS, varied_scenarios
+from benchmarks.scenarios import PATIENT, REST, STARTS, varied_scenarios
 from liftopt.lift import lift
 from liftopt.workshop import Workshop
 
@@ -46,7 +46,8 @@ def objectives(name: str, count: int | None = None) -> Row:
     workshop, ratios, seconds, unsolved = Workshop(), [], [], 0
     kept = [varied for varied in varied_scenarios() if varied.objective is not None][:count]
     for varied in kept:
-        solution = lift(varied.scenario(f"solver.name={name}", f"solver.starts={STARTS}", PATIENT), workshop=workshop)
+        overrides = (f"solver.name={name}", f"solver.starts={STARTS}", PATIENT, REST)
+        solution = lift(varied.scenario(*overrides), workshop=workshop)
         ratios.append(solution.objective / varied.objective if solution.solved and varied.objective else np.inf)
         seconds.append(solution.seconds["total"])
         unsolved += not solution.solved

@@ -6,7 +6,6 @@ else runs on small chains or on CasADi's virtual machine.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -246,7 +245,7 @@ def small_lift(team: Team) -> Problem:
 
 @pytest.fixture(scope="session")
 def starts(small_lift: Problem) -> list[Start]:
-    return posture_starts(small_lift, 2, 0, time.monotonic() + 120.0)
+    return posture_starts(small_lift, 2, 0, np.inf)
 
 
 @pytest.fixture(scope="session")
@@ -256,7 +255,7 @@ def ipopt(small_lift: Problem) -> Ipopt:
 
 @pytest.fixture(scope="session")
 def solved(ipopt: Ipopt, starts: list[Start]) -> SolverResult:
-    return ipopt.solve(starts[0].x, deadline=time.monotonic() + 120.0)
+    return ipopt.solve(starts[0].x, deadline=np.inf)
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -37,9 +36,9 @@ def grasp_map(points: np.ndarray) -> np.ndarray:
 
 def solve(problem: Problem) -> None:
     """Solve from a posture pair and check the point by Pinocchio in double precision."""
-    starts = posture_starts(problem, 1, 0, time.monotonic() + 60.0)
+    starts = posture_starts(problem, 1, 0, np.inf)
     assert starts
-    result = Ipopt(problem).solve(starts[0].x, deadline=time.monotonic() + 60.0)
+    result = Ipopt(problem).solve(starts[0].x, deadline=np.inf)
     assert result.converged, result.status
     assert kkt_error(problem, result.x, result.multipliers).error <= 1e-6
 

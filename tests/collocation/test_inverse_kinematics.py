@@ -19,7 +19,7 @@ from liftopt.multibody.agent import HalfSpace
 
 
 def soon() -> float:
-    return time.monotonic() + 30.0
+    return np.inf
 
 
 def seeds_of(problem: Problem, count: int) -> np.ndarray:

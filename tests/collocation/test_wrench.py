@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -156,7 +155,7 @@ def test_inverse_kinematics_turns_the_hand(
     problem = Problem(Team.of(agents, table), make_task(), Mesh.at_rest())
     rng, pose = np.random.default_rng(3), make_task().start
     seeds = np.array([seed_coordinates(problem, pose, rng) for _ in range(16)])
-    reach = InverseKinematics(problem).reach(pose, seeds, time.monotonic() + 60.0, most=40)
+    reach = InverseKinematics(problem).reach(pose, seeds, np.inf, most=40)
     held = reach.coordinates[reach.shortfall < 1e-6]
     assert len(held) >= 4
     for coordinates in held:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from liftopt.ergonomics.acgih import acgih_limit
-from liftopt.ergonomics.assessment import assess
+from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.niosh import niosh, niosh_terms
 from liftopt.ergonomics.strength import strength_use
 
@@ -47,21 +47,21 @@ def test_niosh_takes_the_hands_place_and_the_persons_part_of_the_load(solution: 
 
 
 def test_scopes_are_stated(solution: Any) -> None:
-    scopes = {measure.name: measure.scope for measure in assess(solution).measures}
+    scopes = {measure.name: measure.scope for measure in ergonomics_of(solution).measures}
     assert scopes == {
         "RULA": "applies",
         "Revised NIOSH lifting equation": "indicative",
         "ISO 11228-1": "out of scope",
         "ACGIH TLV for lifting": "indicative",
     }
-    words = {measure.name: measure.reading for measure in assess(solution).measures}
+    words = {measure.name: measure.reading for measure in ergonomics_of(solution).measures}
     assert "not for one-handed lifts" in words["Revised NIOSH lifting equation"]
     assert "starts at 3 kg" in words["ISO 11228-1"]
 
 
 def test_iso_is_in_range_from_three_kilograms(solution: Any) -> None:
     heavy = replace(solution, scenario=replace(solution.scenario, table=replace(solution.scenario.table, mass=3.0)))
-    (iso,) = (measure for measure in assess(heavy).measures if measure.name == "ISO 11228-1")
+    (iso,) = (measure for measure in ergonomics_of(heavy).measures if measure.name == "ISO 11228-1")
     assert (iso.scope, iso.result) == ("indicative", "not evaluated")
 
 

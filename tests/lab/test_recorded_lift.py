@@ -188,6 +188,7 @@ def test_wrong_recordings_are_refused_with_the_reason(truth: Any) -> None:
     hidden = recording.points.copy()
     hidden[:, recording.index("XIPH")] = np.nan
     refused("XIPH: never seen", replace(recording, points=hidden))
+    refused("never seen", replace(recording, points=np.full_like(hidden, np.nan)))
     apart = recording.points.copy()
     for label in ("RASI", "LASI", "RPSI", "LPSI"):
         apart[:100, recording.index(label)] = np.nan

@@ -10,16 +10,13 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
+from liftopt.assessment.assess import assessed
 from liftopt.cli import main
-from liftopt.ergonomics.assessment import assess
-from liftopt.interpolation import refined
-from liftopt.solution import Solution
 from liftopt.summary import summary_dict
-from liftopt.viz.anatomy import human_curves, robot_curves
-from liftopt.viz.report_findings import Finding, findings
+from liftopt.viz.report import report_html
+from liftopt.viz.report_tables import check_rows
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 LARGEST = 15_000_000  # bytes
@@ -77,83 +74,52 @@ def test_page_is_whole_and_needs_nothing_else(file: Path, page: str) -> None:
 
 def test_page_holds_what_an_engineer_asks_for(page: str, result: Any) -> None:
     text = unescape(re.sub(r"<[^>]*>", " ", page))
-    for heading in ("Warnings", "Playback", "Ergonomics", "Scenario", "Objective", "Verification", "obtained"):
+    for heading in (
+        "Verdicts and warnings",
+        "Playback",
+        "Ergonomics",
+        "Scenario",
+        "Objective",
+        "Verification",
+        "obtained",
+    ):
         assert heading in text
     summary = summary_dict(result.solution)
     assert "solved and verified" in text
     assert f"{summary['objective']['total']:.5g}" in text
     for check in summary["verification"]["checks"]:
-        assert check["name"].removesuffix(" between knots") in text
+        assert check["name"] in text
     for key in ("human.stature", "task.standing_distance", "limits.max_grasp_force", "solver.seed"):
         assert key in text
     assert "not for one-handed lifts" in text
     assert "starts at 3 kg" in text
 
 
-def _found(solution: Solution) -> dict[str, Finding]:
-    dense = refined(solution, 4)
-    human, robot = human_curves(dense.agents[0]), robot_curves(dense.agents[1], "sawyer")
-    return {finding.title: finding for finding in findings(dense, human, robot, assess(dense))}
+def test_page_tells_the_assessment_and_nothing_else(page: str, result: Any) -> None:
+    """Every finding, with the words and the severity that terminal, JSON and solution.nc have."""
+    items = re.findall(r'<li class="(\w+)"><b>[^<]*</b> ?<span>(.*?)</span></li>', page)
+    style = {"stop": "error", "warning": "warning", "caution": "caution", "note": "info"}
+    told = {(style[kind], unescape(re.sub(r" <small>.*</small>", "", text))) for kind, text in items}
+    verdicts = result.solution.assessment.verdicts
+    assert told == {(f.severity, f.message) for f in result.solution.assessment if f not in verdicts}
+    for verdict in verdicts:
+        assert verdict.message in unescape(page)
 
 
-def _titles(solution: Solution, pattern: str) -> list[Finding]:
-    return [finding for title, finding in _found(solution).items() if re.search(pattern, title)]
-
-
-def test_a_joint_near_its_torque_limit_is_named(result: Any) -> None:
-    """With strength cut to the peak torque over 0.9, the joint must be reported at 90 %."""
-    dense = refined(result.solution, 4)
-    curve = human_curves(dense.agents[0])[4]
-    direction = "tau_upper" if curve.tau[np.argmax(curve.share)] > 0 else "tau_lower"
-    human = dense.agents[0]
-    limit = getattr(human.limits, direction).copy()
-    limit[4] *= curve.share.max() / 0.9
-    weak = replace(dense, agents=(replace(human, limits=replace(human.limits, **{direction: limit})), dense.agents[1]))
-    found = findings(weak, human_curves(weak.agents[0]), (), assess(weak))
-    title = "Person: Shoulder flexion (Q5) uses 90 % of its torque limit"
-    assert [f.level for f in found if f.title == title] == ["warning"]
-    assert not _titles(result.solution, "Shoulder flexion .* uses")
-
-
-def test_grasp_force_at_its_cap_is_named(result: Any) -> None:
-    solution: Solution = result.solution
-    largest = max(np.linalg.norm(agent.grasp_force, axis=1).max() for agent in solution.agents)
-    limits = replace(solution.scenario.limits, max_grasp_force=float(largest))
-    capped = replace(solution, scenario=replace(solution.scenario, limits=limits))
-    (finding,) = _titles(capped, "at its cap")
-    assert finding.level == "warning"
-    assert not _titles(solution, "at its cap")
-
-
-def test_a_limit_that_is_active_all_along_is_told_from_one_that_is_touched(result: Any) -> None:
-    solution: Solution = result.solution
-    pose = solution.held.pose.copy()
-    limit = np.radians(solution.scenario.limits.table_pitch_deg)
-    flat = {name: np.zeros_like(pose) for name in ("pose_velocity", "pose_acceleration")}
-    pose[:, 4] = limit
-    (always,) = _titles(replace(solution, held=replace(solution.held, pose=pose, **flat)), "pitch at its limit")
-    pose = pose.copy()
-    pose[2:, 4] = 0.0
-    (sometimes,) = _titles(replace(solution, held=replace(solution.held, pose=pose, **flat)), "pitch at its limit")
-    assert (always.level, sometimes.level) == ("warning", "note")
-    assert "all along" in always.detail
-
-
-def test_forces_that_only_fight_each_other_are_named(result: Any) -> None:
-    solution: Solution = result.solution
-    push = np.array([50.0, 0.0, 10.0])
-    agents = tuple(
-        replace(agent, grasp_force=np.tile(push * [sign, 1, 1], (len(solution.time), 1)))
-        for agent, sign in zip(solution.agents, (1, -1), strict=True)
-    )
-    (finding,) = _titles(replace(solution, agents=agents), "work against each other")
-    assert "press it together" in finding.detail
+def test_a_value_without_a_limit_is_never_ok(result: Any) -> None:
+    rows = {row["name"]: row for row in check_rows(summary_dict(result.solution))}
+    assert rows["balance between knots"]["state"] == rows["unserved moment"]["state"] == "no limit"
+    assert rows["closure at the knots"]["state"] == rows["first-order optimality (KKT error)"]["state"] == "ok"
 
 
 def test_an_unsolved_result_is_no_prediction(result: Any) -> None:
-    first = next(iter(_found(replace(result.solution, outcome="time limit reached")).values()))
-    assert (first.level, first.title) == ("stop", "Not a solution")
-    assert "time limit reached" in first.detail
+    failed = assessed(replace(result.solution, outcome="time limit reached"))
+    page = re.sub(r'srcdoc="[^"]*"', "", report_html(failed))
+    header = page[page.index('id="result"') : page.index('id="warnings"')]
+    assert header.index("not solved") < header.index("person: not assessed")
+    assert "It is no prediction" in header
+    assert "of the person's strength" not in header  # and none of the numbers that matter
+    assert "time limit reached" in page[page.index('id="warnings"') :]
 
 
 @pytest.mark.parametrize("command", [["report", "--html"], ["plot", "--out"]], ids=lambda command: command[0])

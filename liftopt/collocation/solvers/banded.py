@@ -106,13 +106,16 @@ class Banded:
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         rival: SolverResult | None = None,
+        most: int | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``."""
         problem = problem or self.problem
         self._set_parameters(problem)
-        more: dict[str, Any] = {}
+        most = self.options.max_iterations if most is None else min(most, self.options.max_iterations)
+        more: dict[str, Any] = {"max_iterations": most}
         if rival is not None:
-            more = {"rival": rival.objective if rival.converged else np.inf, "max_iterations": self._patience(rival)}
+            patience = min(most, self._patience(rival))
+            more = {"rival": rival.objective if rival.converged else np.inf, "max_iterations": patience}
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
@@ -139,8 +142,7 @@ class Banded:
 
     def _patience(self, rival: SolverResult) -> int:
         """Return how many iterations a start gets that has a rival."""
-        most = max(PATIENCE, PATIENCE_SHARE * rival.iterations) if rival.converged else LONGER
-        return min(most, self.options.max_iterations)
+        return max(PATIENCE, PATIENCE_SHARE * rival.iterations) if rival.converged else LONGER
 
     def _run(self, x0: Array, problem: Problem, deadline: float, arguments: dict[str, Any]) -> dict[str, Any]:
         lower, upper = problem.bounds()
@@ -155,7 +157,7 @@ class Banded:
             rough=options.rough,
             objective_scaling=options.objective_scaling,
             seconds=deadline - time.monotonic(),
-            **({"max_iterations": options.max_iterations} | arguments),
+            **arguments,
         )
         return found
 

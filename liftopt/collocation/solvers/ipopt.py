@@ -33,6 +33,7 @@ SAFETY = 0.5
 WARM_MU, WARM_PUSH = 1e-6, 1e-5
 # What converges at all from a warm start takes a third of these iterations; then a cold start is quicker.
 WARM_ITERATIONS = 40
+EXHAUSTED = "Maximum_Iterations_Exceeded"  # its own word
 EVALUATIONS = ("nlp_f", "nlp_g", "nlp_grad_f", "nlp_jac_g", "nlp_hess_l")
 
 
@@ -69,9 +70,7 @@ class Ipopt:
             SolverError: CasADi's IPOPT cannot be had.
         """
         self.problem, self.options, self._wide = problem, options or IpoptOptions(), wide
-        self._deadline = _Deadline(
-            len(problem.bounds()[0]), problem.constraints.linear.shape[0], len(problem.parameters)
-        )
+        self._stop = _Stop(len(problem.bounds()[0]), problem.constraints.linear.shape[0], len(problem.parameters))
         self._solvers: dict[bool, Any] = {}
 
     def solve(
@@ -82,6 +81,7 @@ class Ipopt:
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         rival: SolverResult | None = None,
+        most: int | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration; a rival changes nothing.
 
@@ -90,6 +90,7 @@ class Ipopt:
         problem = problem or self.problem
         if not problem.constraints.same_rows(self.problem.constraints):
             raise SolverError("the problem has other constraint rows than the one this solver was built for")
+        self._stop.most = most
         if warm is None:
             return self._run(x0, deadline, None, problem)
         first = self._run(x0, deadline, warm, problem)
@@ -112,10 +113,10 @@ class Ipopt:
         arguments |= dict(lbg=constraints.lower, ubg=constraints.upper)
         if warm is not None:
             arguments |= dict(lam_x0=warm.x, lam_g0=warm.g)
-        self._deadline.at = deadline
+        self._stop.at, self._stop.iterations = deadline, 0
         began = time.perf_counter()
         try:
-            with _interruptible(self._deadline):
+            with _interruptible(self._stop):
                 found = solver(**arguments)
         except RuntimeError as error:
             raise SolverError(f"IPOPT could not run: {error}") from error
@@ -127,7 +128,7 @@ class Ipopt:
             objective=float(found["f"]),
             iterations=int(stats["iter_count"]),
             converged=bool(stats["success"]),
-            status=str(stats["return_status"]),
+            status=EXHAUSTED if self._stop.exhausted else str(stats["return_status"]),
             seconds=seconds,
             evaluation_seconds=sum(float(stats.get(f"t_wall_{name}") or 0.0) for name in EVALUATIONS),
         )
@@ -182,7 +183,7 @@ class Ipopt:
                 grad_f=nlp.grad_f,
                 jac_g=nlp.jac_g,
                 hess_lag=nlp.hess_lag,
-                iteration_callback=self._deadline,
+                iteration_callback=self._stop,
                 iteration_callback_ignore_errors=False,
                 print_time=False,
                 record_time=True,
@@ -194,7 +195,7 @@ class Ipopt:
 
 
 @contextmanager
-def _interruptible(deadline: _Deadline) -> Iterator[None]:
+def _interruptible(stop: _Stop) -> Iterator[None]:
     """Let a Ctrl-C stop the solver and act after it: CasADi would take it for a failed evaluation and go on."""
     handler = signal.getsignal(signal.SIGINT)
     # Only the main thread may set handlers; without one of Python's the signal is ignored or ends the process.
@@ -205,7 +206,7 @@ def _interruptible(deadline: _Deadline) -> Iterator[None]:
 
     def note(*_: object) -> None:
         interrupted.append(True)
-        deadline.at = -float("inf")
+        stop.at = -float("inf")
 
     signal.signal(signal.SIGINT, note)
     try:
@@ -216,14 +217,21 @@ def _interruptible(deadline: _Deadline) -> Iterator[None]:
             signal.raise_signal(signal.SIGINT)
 
 
-class _Deadline(ca.Callback):
-    """Stops IPOPT between iterations once the time is over; IPOPT's own limit cannot change between solves."""
+class _Stop(ca.Callback):
+    """Stops IPOPT between iterations, after so many or once the time is over: its own limits stay as they were set."""
 
     def __init__(self, n_x: int, n_g: int, n_p: int) -> None:
         ca.Callback.__init__(self)
         self.at = float("inf")
+        self.most: int | None = None
+        self.iterations = 0
         self._sizes = {"x": n_x, "f": 1, "g": n_g, "lam_x": n_x, "lam_g": n_g, "lam_p": n_p}
-        self.construct("deadline", {})
+        self.construct("stop", {})
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether all iterations it may take were taken, and one more was asked for."""
+        return self.most is not None and self.iterations > self.most
 
     def get_n_in(self) -> int:
         return int(ca.nlpsol_n_out())
@@ -244,5 +252,6 @@ class _Deadline(ca.Callback):
         return True
 
     def eval_buffer(self, _: Any, results: Any) -> int:
-        np.frombuffer(results[0])[0] = time.monotonic() > self.at
+        self.iterations += 1  # the first call is at the start
+        np.frombuffer(results[0])[0] = self.exhausted or time.monotonic() > self.at
         return 0

@@ -68,6 +68,7 @@ class Solver(Protocol):
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         rival: SolverResult | None = None,
+        most: int | None = None,
     ) -> SolverResult:
         """Solve from ``x0``.
 
@@ -78,6 +79,7 @@ class Solver(Protocol):
             problem: another problem of the same structure, for its bounds and parameters; None: the bound one.
             rival: where another start led. Where nothing lower is in sight the solver may give up (``BEATEN``), or
                 where it takes much longer.
+            most: iterations after which it gives up; None: as many as its options say.
 
         Raises:
             SolverError: the solver itself cannot run.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -75,7 +74,7 @@ def test_ipopt_on_wide_kernels_solves_the_same_lift(
     small_lift: Problem, kernels: list[WideKernel], starts: list[Start], solved: SolverResult
 ) -> None:
     """IPOPT on one-knot kernels for the optimum, Pinocchio for the KKT error."""
-    found = Ipopt(small_lift, wide=kernels).solve(starts[0].x, deadline=time.monotonic() + 60.0)
+    found = Ipopt(small_lift, wide=kernels).solve(starts[0].x, deadline=np.inf)
     assert found.converged and kkt_error(small_lift, found.x, found.multipliers).error <= 1e-6
     np.testing.assert_allclose(found.objective, solved.objective, rtol=1e-6)
 
@@ -83,4 +82,4 @@ def test_ipopt_on_wide_kernels_solves_the_same_lift(
 def test_nan_is_a_failure_and_no_exception(small_lift: Problem, kernels: list[WideKernel], starts: list[Start]) -> None:
     x = starts[0].x.copy()
     x[3] = np.nan
-    assert not Ipopt(small_lift, wide=kernels).solve(x, deadline=time.monotonic() + 10.0).converged
+    assert not Ipopt(small_lift, wide=kernels).solve(x, deadline=np.inf).converged

@@ -99,6 +99,7 @@ def test_a_real_file_against_ezc3d(box_lift: Path) -> None:
     ezc3d = pytest.importorskip("ezc3d", reason="ezc3d is not installed (it is in the extra 'test')")
     path = box_lift / "markers_analogs.c3d"
     found, theirs = read_c3d(path), ezc3d.c3d(str(path))
+    assert found.notes == ()
     points = theirs["data"]["points"][:3].transpose(2, 1, 0)
     seen = theirs["data"]["meta_points"]["residuals"][0].T >= 0.0
     index = [theirs["parameters"]["POINT"]["LABELS"]["value"].index(label) for label in found.labels]

@@ -31,6 +31,7 @@ def _header(index: int, word: int) -> Callable[[Any], None]:
     return lambda file: file.header.update({index: word})
 
 
+@pytest.mark.filterwarnings("ignore:missing parameter:UserWarning")  # of py-c3d; what is missing says nothing new
 @pytest.mark.parametrize("floats", [True, False])
 @pytest.mark.parametrize("processor", ["Intel", "DEC", "MIPS"])
 def test_numbers_of_every_processor(
@@ -178,9 +179,7 @@ def test_more_frames_than_the_header_can_count(c3d_file: Any, tmp_path: Path) ->
         ("feet", 0.3048), ("dm", 0.1),
     ],
 )  # fmt: skip
-def test_units_in_any_spelling(
-    spelling: str, metres: float, c3d_file: Any, plain_points: Any, tmp_path: Path
-) -> None:
+def test_units_in_any_spelling(spelling: str, metres: float, c3d_file: Any, plain_points: Any, tmp_path: Path) -> None:
     c3d_file.points *= 0.001 / metres
     c3d_file.parameters["POINT"]["UNITS"] = [spelling]
     found = in_metres(read_c3d(c3d_file.write(tmp_path / "a.c3d")), None, "Z")

@@ -29,22 +29,32 @@ class Measure:
     """One measure as a reader should take it.
 
     Attributes:
+        code: a word for it.
         name: of the method.
         scope: whether it applies to this lift.
         result: in one line.
         reading: what the result says, or why there is none.
         source: of the method and its tables.
+        value: the result as a number, if there is one.
+        limit: the method's own limit on it; None where it has none for this lift.
+        unit: of both.
+        time: of the value [s]; None where it is not of one moment.
     """
 
+    code: str
     name: str
     scope: Scope
     result: str
     reading: str
     source: Source
+    value: float | None = None
+    limit: float | None = None
+    unit: str = ""
+    time: float | None = None
 
 
 @dataclass(frozen=True)
-class Assessment:
+class Ergonomics:
     """The ergonomics of a lift.
 
     Attributes:
@@ -62,12 +72,12 @@ class Assessment:
     measures: tuple[Measure, ...]
 
 
-def assess(solution: Solution) -> Assessment:
+def ergonomics_of(solution: Solution) -> Ergonomics:
     """Return the ergonomic measures of ``solution`` at its times; a finer grid sees what lies between the knots."""
     strength, posture, equation = strength_use(solution), posture_of(solution), niosh(solution)
     scores = rula(posture)
     measures = (_rula(scores, solution), _niosh(equation), _iso(solution), _acgih(solution, equation))
-    return Assessment(strength, posture, scores, equation, measures)
+    return Ergonomics(strength, posture, scores, equation, measures)
 
 
 def _rula(scores: Rula, solution: Solution) -> Measure:
@@ -76,12 +86,16 @@ def _rula(scores: Rula, solution: Solution) -> Measure:
     span = f"{worst}" if best == worst else f"{best} to {worst}"
     part = 100.0 * float((scores.grand == worst).mean())
     return Measure(
+        "posture",
         "RULA",
         "applies",
         f"grand score {span} of 7",
         f"At its worst ({at:.2f} s, {part:.0f} % of the lift): {ACTION[worst]}. Made for seated and standing work of "
         "the arms; a lower bound here, for what the model lacks (the neck, a raised shoulder) is scored at its best.",
         RULA_SOURCE,
+        value=float(worst),
+        unit="of 7",
+        time=at,
     )
 
 
@@ -91,6 +105,7 @@ def _niosh(equation: Niosh) -> Measure:
     if min(origin, destination) > 0.0:
         index = f"{equation.lifting_index:.2f}"
     return Measure(
+        "niosh",
         "Revised NIOSH lifting equation",
         "indicative",
         f"lifting index {index}; recommended weight {origin:.1f} kg at the start, {destination:.1f} kg at the end",
@@ -98,6 +113,9 @@ def _niosh(equation: Niosh) -> Measure:
         f"force), at most {equation.largest_load:.2f} kg. Assumed: one lift now and then (FM = 1), poor coupling "
         f"(CM = {COUPLING_MULTIPLIER:g}), the object put down with control.",
         NIOSH_SOURCE,
+        value=equation.load,
+        limit=min(origin, destination) or None,
+        unit="kg",
     )
 
 
@@ -105,12 +123,12 @@ def _iso(solution: Solution) -> Measure:
     mass, name = solution.scenario.table.mass, solution.held.name
     if mass < ISO_SMALLEST:
         reading = f"The standard starts at {ISO_SMALLEST:g} kg; the {name} has {mass:g} kg."
-        return Measure("ISO 11228-1", "out of scope", "not evaluated", reading, ISO_11228_1)
+        return Measure("iso_11228_1", "ISO 11228-1", "out of scope", "not evaluated", reading, ISO_11228_1)
     reading = (
         f"The {name}'s {mass:g} kg are in its range, but it does not treat a lift that is shared with a robot, and its "
         "reference masses and factors could not be checked at their source: evaluate it with the standard at hand."
     )
-    return Measure("ISO 11228-1", "indicative", "not evaluated", reading, ISO_11228_1)
+    return Measure("iso_11228_1", "ISO 11228-1", "indicative", "not evaluated", reading, ISO_11228_1)
 
 
 def _acgih(solution: Solution, equation: Niosh) -> Measure:
@@ -122,10 +140,15 @@ def _acgih(solution: Solution, equation: Niosh) -> Measure:
     words = " and ".join("none known to be safe" if limit is None else f"{limit:g} kg" for limit in ends)
     used = f"{100 * equation.largest_load / min(found):.0f} % of it used" if len(found) == 2 else "no limit at one end"
     return Measure(
+        "acgih",
         "ACGIH TLV for lifting",
         "indicative",
         f"limits {words} (start and end); {used}",
         "For two-handed lifts within 30° of the middle, at most 2 hours a day and 60 lifts an hour (its Table 1); "
         "compared with the largest vertical hand force.",
         ACGIH_SOURCE,
+        value=equation.largest_load,
+        limit=min(found) if len(found) == 2 else None,
+        unit="kg",
+        time=equation.largest_load_at,
     )

@@ -1,0 +1,108 @@
+"""What passes through the grasps: forces at their cap, hands that work against each other, and the object's tilt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from liftopt.assessment.finding import CAUTION, INFO, PERSON, WARNING, Finding
+from liftopt.assessment.joints import ALL_ALONG, AT_LIMIT
+from liftopt.solution import Solution
+from liftopt.summary import GRAVITY, shares, squeeze
+from liftopt.trajectory import AgentTrajectory
+
+
+def cap_findings(fine: Solution, agent: AgentTrajectory, subject: str) -> Iterator[Finding]:
+    """Give the largest force of an agent's grasp, and its largest moment if it transmits any, beside their caps."""
+    caps = [("force", agent.grasp_force, fine.scenario.limits.max_grasp_force, "N", "limits.max_grasp_force")]
+    if agent.grasp.moments:
+        key = f"{agent.name}.max_grasp_moment"
+        caps.append(("moment", agent.grasp_moment, agent.grasp.max_moment, "Nm", key))
+    for what, vectors, cap, unit, key in caps:
+        size = np.linalg.norm(vectors, axis=1)
+        k, at = int(np.argmax(size)), size >= (1 - AT_LIMIT) * cap
+        who = "hand" if subject == PERSON else "gripper"
+        text = f"The {who}'s {what} is {size[k]:.3g} {unit} at most, at {fine.time[k]:.2f} s"
+        if at.any():
+            text += (
+                f", its cap, for {100 * at.mean():.0f} % of the lift: only {key} = {cap:g} {unit} holds it back, and "
+                "the motion rests on that choice"
+            )
+        yield Finding(
+            f"{subject}.grasp_{what}",
+            WARNING if size[k] > (1 + AT_LIMIT) * cap else CAUTION if at.any() else INFO,
+            f"grasp {what} at its cap" if at.any() else f"grasp {what} up to {size[k]:.3g} {unit}",
+            f"{text}.",
+            agent.name, None, float(fine.time[k]), float(size[k]), float(cap), unit, f"{key} of the scenario",
+        )  # fmt: skip
+
+
+def squeeze_finding(fine: Solution) -> Finding:
+    """Return how hard the two press or pull against each other; more than the object weighs is a warning."""
+    squeezed = squeeze(fine.agents)
+    k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.table.mass * GRAVITY
+    peak, name = abs(float(squeezed[k])), fine.held.name
+    verb = f"press the {name} together" if squeezed[k] > 0 else f"pull the {name} apart"
+    than = f"{'' if peak > weight else 'not '}more than its weight of {weight:.0f} N"
+    text = f"Hand and gripper {verb} with {peak:.0f} N at {fine.time[k]:.2f} s, {than}."
+    if peak > weight:
+        text += " That lifts nothing, and few would do it unasked; a higher objective.force_weight lowers it."
+    return Finding(
+        f"{PERSON}.squeeze",
+        WARNING if peak > weight else INFO,
+        f"hands against each other with {peak:.0f} N",
+        text,
+        fine.agents[0].name, None, float(fine.time[k]), peak, float(weight), "N", f"weight of the {name}",
+    )  # fmt: skip
+
+
+def share_finding(fine: Solution) -> Finding:
+    """Return which part of the load the person carries; that one presses down what the other lifts is a caution.
+
+    From the object's weight on it is a warning, as a squeeze is.
+    """
+    person, share = fine.agents[0], shares(fine.agents)[0]
+    source = "vertical grasp force over that of both"
+    if not np.isfinite(share).any():
+        text = "There is no load to share."
+        return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
+    k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
+    up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
+    down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.table.mass * GRAVITY
+    name, against = fine.held.name, down > AT_LIMIT * weight
+    pressed = f"; one of them presses the {name} down with up to {down:.0f} N while the other lifts" if against else ""
+    title = f"carries {low:.0f} to {100 * share[k]:.0f} % of the load, {100 * np.nanmean(share):.0f} % on average"
+    return Finding(
+        f"{PERSON}.load_share",
+        WARNING if down > weight else CAUTION if against else INFO,
+        title,
+        f"The person {title}; most at {fine.time[k]:.2f} s{pressed}.",
+        person.name,
+        value=float(share[k]),
+        unit="share of the vertical force",
+        source=source,
+    )
+
+
+def tilt_findings(fine: Solution) -> Iterator[Finding]:
+    """Give where the object's tilt is at its limit."""
+    limits, pose, name = fine.scenario.limits, np.degrees(fine.held.pose), fine.held.name
+    for column, way, limit in ((4, "pitch", limits.table_pitch_deg), (5, "yaw", limits.table_yaw_deg)):
+        tilt = np.abs(pose[:, column])
+        k, part = int(np.argmax(tilt)), float((tilt >= (1 - AT_LIMIT) * limit).mean())
+        if not part or limit <= 0:
+            continue
+        along = part >= ALL_ALONG
+        yield Finding(
+            "object.tilt",
+            CAUTION if along else INFO,
+            f"{name}'s {way} at its limit",
+            f"The {name}'s {way} is at its limit of {limit:g} deg for {100 * part:.0f} % of the lift"
+            + (", all along: it shapes the whole prediction." if along else "."),
+            time=float(fine.time[k]),
+            value=float(np.radians(tilt[k])),
+            limit=float(np.radians(limit)),
+            unit="rad",
+            source=f"limits.table_{way}_deg of the scenario",
+        )

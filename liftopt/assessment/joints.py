@@ -1,0 +1,154 @@
+"""Torque, speed and angle of an agent's joints against their limits, between the knots too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.assessment.finding import CAUTION, INFO, WARNING, Finding
+from liftopt.solution import Solution
+from liftopt.summary import joint_meaning, limit_share
+from liftopt.trajectory import AgentTrajectory
+
+Array = npt.NDArray[np.float64]
+Directions = Mapping[tuple[str, int], str]
+
+NEAR_LIMIT = 0.8  # share of a torque limit from which it is a caution
+AT_LIMIT = 1e-3  # share of a limit, or of a range; closer than that is "at" it, farther beyond is exceeded
+ALL_ALONG = 0.9  # share of the lift from which a limit is active "all along"
+
+
+@dataclass(frozen=True)
+class Words:
+    """How the joints of an agent are told.
+
+    Attributes:
+        subject: of the codes, ``"person"`` or ``"robot"``.
+        torque: the last part of the code for a torque.
+        limit: whose limit on torque it is, ``"strength"`` or ``"torque limit"``.
+        source: of the limits on speed, and of those that have none of their own.
+        motions: what a joint does in its negative (-1) and positive (+1) direction, by name without the agent's.
+        torque_sources, range_sources: of the limits on torque and angle in these directions.
+    """
+
+    subject: str
+    torque: str
+    limit: str
+    source: str
+    motions: Directions
+    torque_sources: Directions
+    range_sources: Directions
+
+
+def joint_findings(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
+    """Give what is to be said of an agent's joints.
+
+    Args:
+        fine: the solution between its knots too.
+        agent: one of its agents.
+        words: for them.
+    """
+    yield from _torques(fine, agent, words)
+    yield from _speeds(fine, agent, words)
+    yield from _angles(fine, agent, words)
+
+
+def moving_names(agent: AgentTrajectory) -> list[str]:
+    """Return the names of the joints that move, as in solution.nc."""
+    return [name for name, moves in zip(agent.joint_names, agent.moving, strict=True) if moves]
+
+
+def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
+    share, tau = limit_share(agent), agent.tau[:, agent.moving]
+    names, peaks = moving_names(agent), share.max(axis=0)
+    for row in map(int, np.argsort(-peaks)):
+        k, name = int(np.argmax(share[:, row])), names[row]
+        peak = float(share[k, row])
+        if peak < NEAR_LIMIT and peak < peaks.max():
+            continue
+        sign = 1 if tau[k, row] >= 0 else -1
+        joint = _joint(fine, agent, name, sign, words)
+        severity = WARNING if peak >= 1 - AT_LIMIT else CAUTION if peak >= NEAR_LIMIT else INFO
+        near = 100 * float((share[:, row] >= NEAR_LIMIT).mean())
+        beyond = "" if peak <= 1 + AT_LIMIT else ", more than there is: limits hold at the knots only"
+        limit = agent.limits.tau_upper[row] if sign > 0 else -agent.limits.tau_lower[row]
+        long = f"; above {100 * NEAR_LIMIT:.0f} % for {near:.0f} % of the lift" if near else ""
+        yield Finding(
+            f"{words.subject}.{words.torque}",
+            severity,
+            f"{joint} at {100 * peak:.0f} % of its {words.limit}",
+            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {100 * peak:.0f} % of "
+            f"its {words.limit} of {limit:.3g} Nm{beyond}{long}.",
+            agent.name, name, float(fine.time[k]), abs(float(tau[k, row])), float(limit), "Nm",
+            words.torque_sources.get((_short(agent, name), sign), words.source),
+        )  # fmt: skip
+
+
+def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
+    share = np.abs(agent.v[:, agent.moving]) / agent.limits.velocity
+    largest = int(np.argmax(share.max(axis=0)))
+    for row, name in enumerate(moving_names(agent)):
+        k = int(np.argmax(share[:, row]))
+        peak, limit = float(share[k, row]), float(np.degrees(agent.limits.velocity[row]))
+        if peak < 1 - AT_LIMIT and row != largest:
+            continue
+        joint = _joint(fine, agent, name, 0, words)
+        part = float((share[:, row] >= 1 - AT_LIMIT).mean())
+        severity = WARNING if peak > 1 + AT_LIMIT else CAUTION if peak >= 1 - AT_LIMIT else INFO
+        yield Finding(
+            f"{words.subject}.speed",
+            severity,
+            f"{joint} at {100 * peak:.0f} % of its speed limit",
+            f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {100 * peak:.0f} "
+            f"% of its speed limit{_along(part)}.",
+            agent.name, name, float(fine.time[k]), peak * float(agent.limits.velocity[row]),
+            float(agent.limits.velocity[row]), "rad/s", words.source,
+        )  # fmt: skip
+
+
+def _angles(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
+    q, low, high = np.degrees(agent.q[:, agent.moving]), *np.degrees((agent.limits.q_lower, agent.limits.q_upper))
+    for row, name in enumerate(moving_names(agent)):
+        margin = AT_LIMIT * (high[row] - low[row])
+        for sign, limit, beyond in ((-1, low[row], low[row] - q[:, row]), (1, high[row], q[:, row] - high[row])):
+            k, at = int(np.argmax(beyond)), beyond >= -margin
+            if not at.any():
+                continue
+            joint, exceeded = _joint(fine, agent, name, sign, words), bool(beyond[k] > margin)
+            part = float(at.mean())
+            severity = WARNING if exceeded else CAUTION if part >= ALL_ALONG else INFO
+            where = f"{beyond[k]:.2g} deg beyond" if exceeded else "at"
+            yield Finding(
+                f"{words.subject}.range",
+                severity,
+                f"{joint} {where} the end of its range",
+                f"{_first(joint, words)} comes to {round(q[k, row], 1) + 0.0:.1f} deg, {where} the end of its "
+                f"range{_along(part)}.",
+                agent.name, name, float(fine.time[k]), float(np.radians(q[k, row])), float(np.radians(limit)), "rad",
+                words.range_sources.get((_short(agent, name), sign), words.source),
+            )  # fmt: skip
+
+
+def _along(part: float) -> str:
+    if part >= ALL_ALONG:
+        return ", there all along: it shapes the whole prediction"
+    return f", there for {100 * part:.0f} % of the lift" if part else ""
+
+
+def _joint(fine: Solution, agent: AgentTrajectory, name: str, sign: int, words: Words) -> str:
+    """Return a joint in its user's words: the motion in a direction (0: none), and its name in the paper's tables."""
+    short = _short(agent, name)
+    motion = words.motions.get((short, sign)) or joint_meaning(agent.name, fine.scenario.robot.model, short)
+    return f"{motion.removesuffix(' (-)').lstrip('-')} ({short})" if motion else short
+
+
+def _first(joint: str, words: Words) -> str:
+    """Return a joint as the first words of a sentence; a robot's names are written as they are."""
+    return joint[0].upper() + joint[1:] if words.motions else joint
+
+
+def _short(agent: AgentTrajectory, name: str) -> str:
+    return name.removeprefix(f"{agent.name}_")

@@ -1,0 +1,97 @@
+"""What the lift asks of the person: strength, posture, the lifting guides, and how far the limits can be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from liftopt.assessment.finding import CAUTION, INFO, PERSON, WARNING, Finding
+from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
+from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
+from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
+from liftopt.ergonomics.rula import ACTION
+from liftopt.multibody.provenance import subject_quantities
+from liftopt.multibody.range_of_motion import RANGES, VELOCITY_SOURCE
+from liftopt.multibody.sources import Source
+from liftopt.multibody.strength import STRENGTHS
+from liftopt.scene import subject_of
+from liftopt.solution import Solution
+
+CHANGE, INVESTIGATE = 5, 3  # grand scores from which RULA asks for a change, and for a closer look
+UNSURE = ("unverified", "estimate")
+
+
+def person_findings(fine: Solution) -> Iterator[Finding]:
+    """Give what is to be said of the person in a solution between its knots too."""
+    person, ergonomics = fine.agents[0], ergonomics_of(fine)
+    yield from joint_findings(fine, person, _words())
+    for measure in ergonomics.measures:
+        yield _posture(fine, ergonomics, measure) if measure.code == "posture" else _guide(fine, measure)
+    yield squeeze_finding(fine)
+    yield share_finding(fine)
+    yield from cap_findings(fine, person, PERSON)
+    yield _data(fine)
+
+
+def _words() -> Words:
+    motions = {(item.joint, item.sign): item.motion for item in STRENGTHS}
+    strength = {(item.joint, item.sign): told(item.source) for item in STRENGTHS}
+    ranges = {(item.joint, -1): told(item.lower_source) for item in RANGES}
+    ranges |= {(item.joint, 1): told(item.upper_source) for item in RANGES}
+    return Words(PERSON, "strength", "strength", told(VELOCITY_SOURCE), motions, strength, ranges)
+
+
+def told(source: Source) -> str:
+    """Return a source in one line, with how far it was checked."""
+    return f"{source.citation} ({source.confidence})"
+
+
+def _posture(fine: Solution, ergonomics: Ergonomics, measure: Measure) -> Finding:
+    scores = ergonomics.rula
+    worst, parts = int(scores.grand.max()), scores.at(scores.worst)
+    words = ", ".join(
+        f"{name.replace('_', ' ')} {parts[name]}" for name in ("upper_arm", "lower_arm", "wrist", "trunk")
+    )
+    text = f"The posture scores RULA {worst} of 7 at {measure.time:.2f} s ({words}): {ACTION[worst]}"
+    if worst >= CHANGE:
+        text += f"; {CHANGE} or more for {100 * float((scores.grand >= CHANGE).mean()):.0f} % of the lift"
+    return Finding(
+        f"{PERSON}.posture",
+        WARNING if worst >= CHANGE else CAUTION if worst >= INVESTIGATE else INFO,
+        f"posture RULA {worst} of 7, {ACTION[worst]}",
+        f"{text}.",
+        fine.agents[0].name, None, measure.time, measure.value, None, measure.unit, told(measure.source),
+    )  # fmt: skip
+
+
+def _guide(fine: Solution, measure: Measure) -> Finding:
+    """Return what a lifting guide says; beyond its limit, or where it knows none, is a warning."""
+    name, severity, title = measure.name, INFO, f"{measure.name} not evaluated"
+    if measure.value is not None and measure.limit is None:
+        severity, title = WARNING, f"{name}: no limit known to be safe for where the hand is"
+    elif measure.value is not None and measure.limit is not None:
+        used = max(0.0, measure.value / measure.limit)  # a hand that only pulls down lifts nothing
+        severity = WARNING if used > 1.0 else CAUTION if used >= NEAR_LIMIT else INFO
+        title = f"{100 * used:.0f} % of the {name} ({measure.value:.1f} of {measure.limit:.1f} kg)"
+    return Finding(
+        f"{PERSON}.{measure.code}",
+        severity,
+        title,
+        f"{name} ({measure.scope}): {measure.result}. {measure.reading}",
+        fine.agents[0].name, None, measure.time, measure.value, measure.limit, measure.unit, told(measure.source),
+    )  # fmt: skip
+
+
+def _data(fine: Solution) -> Finding:
+    strengths = [item for item in subject_quantities(subject_of(fine.scenario.human)) if item.group == "strength"]
+    weak = [item for item in strengths if item.source.confidence in UNSURE]
+    part = f"{len(weak)} of {len(strengths)} strength limits"
+    return Finding(
+        f"{PERSON}.strength_data",
+        INFO,
+        f"{part} not checked at their source",
+        f"{part} could not be checked at their source. They are typical values of the 50th percentile, not of one "
+        "person; every share of strength inherits that.",
+        fine.agents[0].name,
+        value=float(len(weak)),
+        source="; ".join(dict.fromkeys(told(item.source) for item in weak)),
+    )

@@ -1,0 +1,140 @@
+"""An assessment on a terminal: the verdicts first, 80 columns wide, at most ``MOST_LINES`` lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from textwrap import wrap
+from typing import NamedTuple
+
+from liftopt.assessment.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
+from liftopt.scenario import Scenario
+from liftopt.solution import Solution
+
+WIDTH, MOST_LINES = 80, 25
+HEAD = -1
+MARKS = {WARNING: "! ", CAUTION: "- ", INFO: ""}
+WORDS = {WARNING: "WARNING", CAUTION: "caution", INFO: "within limits"}
+# Told in any case.
+ALWAYS = {
+    PERSON: ("strength", "posture", "acgih", "grasp_force", "load_share"),
+    ROBOT: ("torque", "payload"),
+    MATHEMATICS: ("mesh", "objective_error"),
+}
+
+
+class Part(NamedTuple):
+    """Lines that belong together, and the rank of their severity; ``HEAD`` is never left out."""
+
+    rank: int
+    lines: list[str]
+
+
+def verdict_text(solution: Solution, folder: Path | None) -> str:
+    """Return the verdicts on a solved lift, for those who plan the station.
+
+    Args:
+        solution: solved.
+        folder: that it was written to, if any.
+    """
+    assessment = solution.assessment
+    head = [*_wrapped(f"{solution.scenario.name}: {_headline(assessment)}"), *_scenario(solution.scenario), ""]
+    foot = ["", *_caveats(assessment), *_where(folder)]
+    room = MOST_LINES - len(head) - len(foot)
+    parts = list(_verdicts(assessment, _explained))
+    if _lines(parts) > room:
+        parts = list(_verdicts(assessment, _titled))
+    body = _fitted(parts, room)
+    return "\n".join([*head, *body, *foot]) + "\n"
+
+
+def details_text(assessment: Assessment) -> str:
+    """Return all findings in full."""
+    lines = ["All findings", *(line for finding in assessment for line in _full(finding))]
+    return "\n".join(lines) + "\n"
+
+
+def _headline(assessment: Assessment) -> str:
+    judged = [verdict for verdict in assessment.verdicts if verdict.subject != MATHEMATICS]
+    told = [f"{WORDS[verdict.severity]} for the {verdict.subject}" for verdict in judged if verdict.severity != INFO]
+    return ", ".join(told) or "person and robot within limits"
+
+
+def _scenario(scenario: Scenario) -> list[str]:
+    human, robot, table, task = scenario.human, scenario.robot, scenario.table, scenario.task
+    return _wrapped(
+        f"{human.sex} {human.stature:g} m, {human.mass:g} kg and {robot.model} lift {table.mass:g} kg ({table.depth:g} "
+        f"x {table.width:g} x {table.height:g} m) from {task.start.height:g} to {task.end.height:g} m (height of the "
+        f"edges they hold) in {scenario.duration:g} s, standing {task.standing_distance:g} m apart"
+    )
+
+
+def _verdicts(assessment: Assessment, told: Callable[[Finding], list[str]]) -> Iterator[Part]:
+    """Give the verdicts, each with what it rests on, the gravest first."""
+    for verdict in assessment.verdicts:
+        subject, found = verdict.subject, assessment.about(verdict.subject)
+        yield Part(HEAD, [f"{'Solve' if subject == MATHEMATICS else subject.capitalize()}: {_word(verdict)}"])
+        always = [f"{subject}.{code}" for code in ALWAYS[subject]]
+        for finding in found:
+            if finding.severity != INFO:
+                yield Part(finding.rank, told(finding))
+            elif finding.code in always:
+                yield Part(finding.rank, _titled(finding))
+
+
+def _fitted(parts: list[Part], room: int) -> list[str]:
+    """Return the lines of parts, without the last of the least grave ones if there are too many."""
+    kept, left = list(parts), 0
+    while _lines(kept) + bool(left) > room:
+        least = max(part.rank for part in kept)
+        last = max(i for i, part in enumerate(kept) if part.rank == least)
+        del kept[last]
+        left += 1
+    lines = [line for part in kept for line in part.lines]
+    return [*lines, f"  ... and {left} more findings with --details and in the report"] if left else lines
+
+
+def _lines(parts: list[Part]) -> int:
+    return sum(len(part.lines) for part in parts)
+
+
+def _word(verdict: Finding) -> str:
+    return verdict.title if verdict.subject == MATHEMATICS else WORDS[verdict.severity]
+
+
+def _explained(finding: Finding) -> list[str]:
+    return _item(finding, finding.message) if finding.severity == WARNING else _titled(finding)
+
+
+def _titled(finding: Finding) -> list[str]:
+    when = "" if finding.time is None else f", at {finding.time:.2f} s"
+    return _item(finding, f"{finding.title}{when}")
+
+
+def _full(finding: Finding) -> list[str]:
+    source = f" [{finding.source}]" if finding.source else ""
+    return _wrapped(f"{finding.code} ({finding.severity}): {finding.message}{source}", "  ", "    ")
+
+
+def _item(finding: Finding, text: str) -> list[str]:
+    mark = MARKS[finding.severity]
+    return _wrapped(f"{mark}{text}", "  ", f"  {' ' * len(mark)}")
+
+
+def _caveats(assessment: Assessment) -> list[str]:
+    told = [
+        finding.title for finding in assessment if finding.code in (f"{PERSON}.strength_data", "clearance.not_checked")
+    ]
+    return _wrapped("; ".join(told).capitalize()) if told else []
+
+
+def _where(folder: Path | None) -> Iterable[str]:
+    if folder is None:
+        return
+    # Paths are not broken up, so that they can be copied.
+    yield f"Written to {folder}: solution.nc, scenario.toml, models/*.urdf"
+    yield f"More: solve with --details, or liftopt report {folder} --html FILE"
+
+
+def _wrapped(text: str, first: str = "", then: str = "") -> list[str]:
+    return wrap(text, WIDTH, initial_indent=first, subsequent_indent=then, break_on_hyphens=False)

@@ -1,0 +1,38 @@
+"""What ``liftopt solve`` prints of a solution."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from liftopt.assessment.text import details_text, verdict_text
+from liftopt.solution import Solution
+from liftopt.summary import summary_dict
+from liftopt.summary_text import print_details
+
+
+def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: bool) -> str:
+    """Return one JSON object, or the verdicts on a solved lift and, where they are asked for, the details.
+
+    Args:
+        solution: solved or not.
+        folder: that it was written to.
+        as_json: one object instead of text.
+        details: also all findings and the tables; of an iterate only how the solver fared.
+    """
+    if as_json:
+        return json.dumps(summary_dict(solution, folder), allow_nan=False) + "\n"
+    parts = [verdict_text(solution, folder)] if solution.solved else []
+    if details:
+        parts.append(details_text(solution.assessment) + _tables(summary_dict(solution, folder)))
+    return "\n".join(parts)
+
+
+def _tables(summary: dict[str, Any]) -> str:
+    console = Console()
+    with console.capture() as capture:
+        print_details(summary, console)
+    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
