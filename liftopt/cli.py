@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import liftopt
+from liftopt.commands.parser import Parser
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
 from liftopt.interrupt import INTERRUPTED, interrupts
 from liftopt.lab.calibrate_command import add_calibrate_parser, calibrate_text
@@ -31,7 +32,8 @@ from liftopt.lab.record_command import add_record_parser, record
 from liftopt.lab.scenario_command import add_scenario_parser, scenario_text
 from liftopt.pareto_command import add_pareto_parser, pareto
 from liftopt.result_folder import in_the_way
-from liftopt.scenario import Scenario, load_scenario, shipped_scenarios
+from liftopt.scenario import Scenario, load_scenario
+from liftopt.scenario_file import shipped_scenarios
 from liftopt.scenario_schema import describe
 from liftopt.sensitivity_command import add_sensitivity_parser, sensitivity
 from liftopt.viz import FORMATS
@@ -46,17 +48,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         argv: arguments after the program's name; None takes those of the process.
 
     Raises:
-        SystemExit: from argparse, for ``--help``, ``--version`` (0) and wrong usage (2).
+        SystemExit: from argparse, with status 0, for ``--help`` and ``--version``.
     """
-    args = _parser().parse_args(argv)
+    words = sys.argv[1:] if argv is None else list(argv)
     try:
+        args = _parser().parse_args(words)
         status: int = args.run(args)
     except KeyboardInterrupt:
         _complain("interrupted")
         return INTERRUPTED
     except LiftoptError as error:
         status = BAD_INPUT if isinstance(error, InputError) else NOT_SOLVED
-        if getattr(args, "json", False):
+        if "--json" in words:
             _write(json.dumps(_error_dict(error, status)) + "\n")
         _complain(str(error))
     except OSError as error:  # a full disk, a folder taken away meanwhile: nothing of ours to debug
@@ -66,7 +69,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="liftopt",
         description="Predict how a person and a robot lift an object together.",
         allow_abbrev=False,
@@ -86,7 +89,8 @@ def _parser() -> argparse.ArgumentParser:
         "scenario",
         nargs="?",
         metavar="SCENARIO",
-        help=f"a TOML file, or one that is shipped: {', '.join(shipped_scenarios())} (default: table5)",
+        help=f"a TOML file, a result folder, or one that is shipped: {', '.join(shipped_scenarios())} "
+        "(default: table5)",
     )
     solve.add_argument("--out", metavar="DIR", help="folder for the result (default: results/<scenario name>)")
     solve.add_argument(

@@ -115,7 +115,7 @@ class _Walk:
 
     def _search(self, i: int) -> Plan | None:
         """Return the best of several starts at one ratio."""
-        self.say(f"searching at weights {_shown(weights_at(self.total, self.logs[i]))}")
+        self.say(f"searching at weights {ratio_text(weights_at(self.total, self.logs[i]))}")
         self.replanner.latest = None
         self.replanner.solve(self._scenario(self.logs[i]), cold=True)
         found, options = self.replanner.latest, self.scenario.solver
@@ -146,7 +146,7 @@ class _Walk:
         return gained
 
     def _warm(self, plan: Plan, log: float, onto: float, halvings: int = HALVINGS) -> Plan | None:
-        self.say(f"following an optimum to weights {_shown(weights_at(self.total, onto))}")
+        self.say(f"following an optimum to weights {ratio_text(weights_at(self.total, onto))}")
         self.replanner.latest = plan
         there = self.replanner.replan(self._scenario(onto))
         if there is not None or halvings == 0:
@@ -185,5 +185,9 @@ def _beats(one: Point, other: Point) -> bool:
     return no_worse and not all(map(math.isclose, one.efforts, other.efforts))
 
 
-def _shown(weights: tuple[float, float]) -> str:
-    return f"{weights[0]:.3g} : {weights[1]:.3g}"
+def ratio_text(weights: tuple[float, float]) -> str:
+    """Return the ratio of two weights, not both 0, as everybody tells it: ``"1 : 100"``, ``"2.51 : 1"``."""
+    human, robot = weights
+    if not human or not robot:
+        return "1 : 0" if human else "0 : 1"
+    return f"{human / robot:.3g} : 1" if human >= robot else f"1 : {robot / human:.3g}"

@@ -57,7 +57,7 @@ def pareto(args: argparse.Namespace, say: Callable[[str], None] | None = None) -
     write_front(front, values, out)
     if args.json:
         return json.dumps(values, allow_nan=False) + "\n"
-    return _table(values) + f"Written to {out}: pareto.csv, pareto.json, pareto.svg, pareto.png, pareto.pdf\n"
+    return table(values) + f"Written to {out}: pareto.csv, pareto.json, pareto.svg, pareto.png, pareto.pdf\n"
 
 
 def write_front(front: Front, values: dict[str, Any], out: Path) -> None:
@@ -118,7 +118,10 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
     }
 
 
-def _table(values: dict[str, Any]) -> str:
+def table(values: dict[str, Any]) -> str:
+    """Return the table that the command prints, of what ``front_dict`` returned."""
+    from liftopt.pareto import ratio_text
+
     lines = [
         "Effort is the integral of squared joint torques; load is the person's mean part of the object's weight, most",
         "used the largest part of a joint's torque limit.",
@@ -127,7 +130,7 @@ def _table(values: dict[str, Any]) -> str:
         f"{'':>22} {'[N2 m2 s]':>10} {'[N2 m2 s]':>10} {'[%]':>6} {'person':>7} {'robot':>7}",
     ]
     for row in values["points"]:
-        weights = f"{row['human_weight']:.3g} : {row['robot_weight']:.3g}"
+        weights = ratio_text((row["human_weight"], row["robot_weight"]))
         used = [f"{100 * row[f'{who}_largest_share_of_limit']:.0f}%" for who in ("human", "robot")]
         lines.append(
             f"{weights:>22} {row['human_effort_N2m2s']:10.1f} {row['robot_effort_N2m2s']:10.1f} "
@@ -135,5 +138,5 @@ def _table(values: dict[str, Any]) -> str:
             + ("  beaten in both" if row["dominated"] else "")
         )
     for human, robot in values["missing_weights"]:
-        lines.append(f"{human:.3g} : {robot:.3g} has no verified solution".rjust(22))
+        lines.append(f"{ratio_text((human, robot)):>22}  has no verified solution")
     return "\n".join(lines) + "\n"

@@ -29,6 +29,7 @@ URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table
 FILES = (*(f"{MODELS}/{name}" for name in URDF_FILES.values()), SCENARIO, NETCDF)
 UNSOLVED = "unsolved"  # folder for the iterate of a failed solve, within that of a solved result
 OLDER, WORK_PREFIX = ".older-result", ".writing-result-"
+MOST_LOOKED_AT = 1000  # entries of a folder where a result is looked for
 PATIENCE = 10.0  # seconds; a result is written in a tenth of one
 
 
@@ -36,6 +37,27 @@ def standing_result(folder: Path) -> Path:
     """Return where the files of the result in ``folder`` stand: there, or in what a writer that died had kept."""
     older = folder / OLDER
     return older if older.is_dir() and not older.is_symlink() else folder
+
+
+def holds_result(folder: Path) -> bool:
+    """Return whether there is a result in ``folder``, which need not exist."""
+    try:
+        return (standing_result(folder) / NETCDF).is_file()
+    except (OSError, ValueError):  # too long a name, a NUL
+        return False
+
+
+def results_in(folder: Path) -> list[Path]:
+    """Return the folders in ``folder`` that hold a result, of its first ``MOST_LOOKED_AT`` entries."""
+    return [entry for entry in first_entries(folder) if holds_result(entry)]
+
+
+def first_entries(folder: Path) -> list[Path]:
+    """Return the first ``MOST_LOOKED_AT`` entries of a folder in order; none if it cannot be looked into."""
+    try:
+        return sorted(entry for entry, _ in zip(folder.iterdir(), range(MOST_LOOKED_AT), strict=False))
+    except (OSError, ValueError):
+        return []
 
 
 def in_the_way(folder: Path) -> Path | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.likeness import difference
 from liftopt.netcdf_file import read_netcdf
 from liftopt.result_folder import MODELS, NETCDF, SCENARIO, URDF_FILES, locked, standing_result
+from liftopt.result_path import no_result, result_file
 from liftopt.result_record import read_assessment, read_record
 from liftopt.scenario import Scenario, load_scenario
 from liftopt.scene import agents_of, object_of
@@ -30,7 +32,7 @@ SAME_TIME = 1e-6  # of the duration
 
 
 def load_result(path: str | Path) -> Solution:
-    """Return the solution in a result folder, or beside a ``solution.nc``.
+    """Return the solution in a result folder; its ``solution.nc`` and its ``scenario.toml`` stand for it too.
 
     Trajectories come from solution.nc, the models' limits from scenario.toml beside it. Nothing is written, and the
     files are taken for what anybody may have made of them; see ``netcdf_file`` and ``model_file``.
@@ -40,13 +42,18 @@ def load_result(path: str | Path) -> Solution:
             than the scenario's; it says which and why.
     """
     path = Path(path)
-    file = path if path.name.endswith(".nc") else path / NETCDF
+    file = result_file(path)
+    with suppress(OSError, ValueError):  # too long a name, a NUL: reading it says so
+        if file.parent.is_file():
+            raise no_result(path)
     with locked(file.parent, to_write=False):
         folder = standing_result(file.parent) if file.name == NETCDF else file.parent
         try:
             data, attributes = read_netcdf(folder / file.name)
         except FileNotFoundError:
-            raise InputError(str(path), NO_VALUE, f"is no result: there is no file {file.name} there") from None
+            raise no_result(path) from None
+        if not (folder / SCENARIO).exists():
+            raise InputError(str(folder / SCENARIO), NO_VALUE, "no such file; a result has one beside its solution.nc")
         scenario = load_scenario(folder / SCENARIO)
         urdfs = {name: read_model(folder / MODELS / name) for name in URDF_FILES.values()}
     try:

@@ -5,7 +5,6 @@ SI units; radians unless the key says otherwise. The world frame has Z up and X 
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -14,20 +13,13 @@ from typing import Annotated, Any
 
 import tomli_w
 
-from liftopt.errors import NO_VALUE, InputError
-from liftopt.regular_file import read_regular
+from liftopt.errors import InputError
+from liftopt.scenario_file import read_scenario_file
+from liftopt.scenario_overrides import refuse_unknown_keys, set_entry
 from liftopt.scenario_schema import Choice, Name, Number, Switch, Whole, entries, section
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-SHIPPED = Path(__file__).parent / "scenarios"
 GRASPS = ("point", "wrench")
 RESTS = ("velocity", "acceleration")
-LARGEST_FILE = 100_000  # bytes; a scenario has some 30 lines
-MOST_DOTS = 200  # in a line; the longest key has two
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,31 +179,25 @@ class Scenario:
                 )
 
 
-def shipped_scenarios() -> tuple[str, ...]:
-    """Return the names of the scenarios that come with liftopt."""
-    return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
-
-
 def load_scenario(source: str | Path | None = None, overrides: Iterable[str] = ()) -> Scenario:
     """Return the scenario of a TOML file. One without ``task.rest`` means ``"acceleration"``, as all did before.
 
     Args:
-        source: path of the file, or the name of a shipped scenario (a str); None is ``"table5"``.
+        source: path of the file, the name of a shipped scenario (a str), or a result folder, which stands for the
+            scenario that was solved; None is ``"table5"``.
         overrides: ``"dotted.key=value"`` each, see ``with_overrides``; later ones win.
 
     Raises:
         InputError: the file cannot be read, is not TOML, or does not describe a scenario.
     """
-    source = "table5" if source is None else source
-    path = SHIPPED / f"{source}.toml" if source in shipped_scenarios() else Path(source)
-    data = _parse(path, _read(path))
+    path, data = read_scenario_file("table5" if source is None else source)
     with suppress(InputError):  # a file name need not be a name
         data.setdefault("name", Name("file name").accept("name", path.stem))
     task = data.get("task")
     if isinstance(task, dict):  # what files meant before there was a choice
         task.setdefault("rest", "acceleration")
     for override in overrides:
-        _set(data, override)
+        set_entry(data, override)
     return scenario_from_dict(data)
 
 
@@ -223,6 +209,7 @@ def scenario_from_dict(data: Mapping[str, Any]) -> Scenario:
     """
     if "schema" in data:  # first: the keys of another version would all be unknown
         entries(Scenario)[0].kind.accept("schema", data["schema"])
+    refuse_unknown_keys(data, Scenario)
     scenario: Scenario = section(Scenario).accept("", data)
     return scenario
 
@@ -240,7 +227,7 @@ def with_overrides(scenario: Scenario, overrides: Iterable[str]) -> Scenario:
     """
     data = scenario_to_dict(scenario)
     for override in overrides:
-        _set(data, override)
+        set_entry(data, override)
     return scenario_from_dict(data)
 
 
@@ -252,57 +239,3 @@ def scenario_to_dict(scenario: Scenario) -> dict[str, Any]:
 def scenario_to_toml(scenario: Scenario) -> str:
     """Return the scenario as a TOML file, all defaults filled in; reading it gives an equal scenario."""
     return tomli_w.dumps(scenario_to_dict(scenario))
-
-
-def _read(path: Path) -> str:
-    shown = str(path)
-    try:
-        raw = read_regular(path, LARGEST_FILE, "a scenario is a short TOML file")
-    except FileNotFoundError:
-        names = ", ".join(shipped_scenarios())
-        raise InputError(shown, NO_VALUE, f"no such file, nor a shipped scenario ({names})") from None
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(shown, NO_VALUE, f"is not UTF-8 text (byte {error.start})") from None
-    if "\0" in text:
-        raise InputError(shown, NO_VALUE, "is a binary file; a scenario is a TOML file")
-    return text
-
-
-def _parse(path: Path, text: str) -> dict[str, Any]:
-    try:
-        return _toml(text)
-    except (ValueError, RecursionError) as error:  # ValueError: TOMLDecodeError, or an integer of too many digits
-        raise InputError(str(path), NO_VALUE, f"is not valid TOML: {error}") from None
-
-
-def _toml(text: str) -> dict[str, Any]:
-    """Return the tables of a TOML text; raises ValueError or RecursionError."""
-    # The parser takes the square of a key's parts in time: seconds for 10 000, an hour for a million.
-    for number, line in enumerate(text.splitlines(), start=1):
-        if line.count(".") > MOST_DOTS:
-            raise ValueError(f"more than {MOST_DOTS} dots (in line {number})")
-    return tomllib.loads(text)
-
-
-def _set(data: dict[str, Any], override: str) -> None:
-    key, equals, text = override.partition("=")
-    parts = [part.strip() for part in key.split(".")]
-    if not equals or not all(parts):
-        raise InputError("--set", override, "must be KEY=VALUE with a dotted key, for example table.mass=3")
-    for depth, part in enumerate(parts[:-1], start=1):
-        inner = data.get(part, {})
-        if not isinstance(inner, dict):
-            raise InputError(".".join(parts), NO_VALUE, f"{'.'.join(parts[:depth])} is a value, not a section")
-        data[part] = inner
-        data = inner
-    data[parts[-1]] = _value(text.strip())
-
-
-def _value(text: str) -> Any:
-    try:
-        parsed = _toml(f"value = {text}")
-    except (ValueError, RecursionError):
-        return text
-    return parsed["value"] if len(parsed) == 1 else text  # a line break could smuggle in a second key

@@ -7,7 +7,6 @@ to know of an entry, and reading, checking, writing and help follow from it.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterator, Mapping
@@ -16,6 +15,8 @@ from functools import cache
 from typing import Any, NamedTuple, cast, get_type_hints
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.number_text import number_meant
+from liftopt.suggestions import did_you_mean, nearest
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,11 @@ class Kind(ABC):
 
     def refuse(self, key: str, value: object) -> InputError:
         """Return the error that says what would have been accepted at ``key``."""
-        return InputError(key, value, f"must be {self.allowed} ({self.about})")
+        return InputError(key, value, f"must be {self.allowed} ({self.about}){self.meant(value)}")
+
+    def meant(self, value: object) -> str:
+        """Return the end of a message that says how to write what ``value`` may have meant; empty if nothing."""
+        return ""
 
 
 @dataclass(frozen=True)
@@ -78,6 +83,11 @@ class Number(Kind):
             raise self.refuse(key, value)
         return float(value)
 
+    def meant(self, value: object) -> str:  # noqa: D102
+        if self.word is not None and isinstance(value, str) and value.lower() == self.word:
+            return f"; write {self.word}"
+        return number_meant(value, self.unit, self.low, self.high)
+
     def plain(self, value: Any) -> Any:  # noqa: D102
         return self.word if value is None else value
 
@@ -98,6 +108,12 @@ class Whole(Kind):
             raise self.refuse(key, value)
         return value
 
+    def meant(self, value: object) -> str:  # noqa: D102
+        if isinstance(value, float) and value.is_integer() and self.low <= value <= self.high:
+            return f"; write {value:.0f}"
+        offer = number_meant(value, "", self.low, self.high) if isinstance(value, str) else ""
+        return "" if "." in offer else offer
+
 
 @dataclass(frozen=True)
 class Switch(Kind):
@@ -111,6 +127,13 @@ class Switch(Kind):
         if not isinstance(value, bool):
             raise self.refuse(key, value)
         return value
+
+    def meant(self, value: object) -> str:  # noqa: D102
+        word = str(value).lower() if isinstance(value, (str, int)) else ""
+        truth = {"true": "true", "yes": "true", "on": "true", "1": "true"} | {
+            "false": "false", "no": "false", "off": "false", "0": "false",
+        }  # fmt: skip
+        return f"; write {truth[word]}" if word in truth else ""
 
 
 @dataclass(frozen=True)
@@ -128,6 +151,10 @@ class Choice(Kind):
             if type(value) is type(choice) and value == choice:  # True == 1 and 1.0 == 1
                 return choice
         raise self.refuse(key, value)
+
+    def meant(self, value: object) -> str:  # noqa: D102
+        words = [choice for choice in self.values if isinstance(choice, str)]
+        return did_you_mean(nearest(value, words)) if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True)
@@ -163,7 +190,7 @@ class Section(Kind):
         prefix = f"{key}." if key else ""
         for name in value:
             if name not in known:
-                raise InputError(prefix + _bare(name), value[name], _unknown(str(name), list(known)))
+                raise InputError(prefix + shown_key(str(name)), value[name], _unknown(str(name), list(known)))
         for name, (_, kind, required, _) in known.items():
             if required and name not in value:
                 raise InputError(prefix + name, NO_VALUE, f"is missing; must be {kind.allowed} ({kind.about})")
@@ -214,11 +241,10 @@ def describe(of: type[Any], prefix: str = "") -> Iterator[tuple[str, str]]:
             yield prefix + name, f"{kind.about}: {kind.allowed}{shown}"
 
 
+def shown_key(key: str) -> str:
+    """Return a dotted key as a message shows it: an odd one in quotes, a long one cut."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]{1,60}(\.[A-Za-z0-9_-]{1,60})*", key) else f"{key[:60]!r}"
+
+
 def _unknown(name: str, known: list[str]) -> str:
-    close = difflib.get_close_matches(name, known, n=1)
-    return f"unknown key; did you mean {close[0]}?" if close else "unknown key; known here: " + ", ".join(known)
-
-
-def _bare(name: object) -> str:
-    text = str(name)
-    return text if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", text) else f"{text[:60]!r}"
+    return "unknown key" + (did_you_mean(nearest(name, known)) or "; known here: " + ", ".join(known))

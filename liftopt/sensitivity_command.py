@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
-from liftopt.result_folder import SCENARIO, locked, standing_result
 from liftopt.scenario import Scenario, load_scenario, scenario_to_dict, with_overrides
 from liftopt.viz import FORMATS
 from liftopt.whole_file import write_whole
@@ -28,8 +26,9 @@ def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], in
     parser = commands.add_parser(
         "sensitivity",
         help="what effort, peak torques and load share depend on",
-        description="Solve a scenario, or that of a result anew, and differentiate its optimum by stature, masses, "
-        "heights, distances and duration; everybody re-plans as they change.",
+        description="Solve a scenario, or that of a result anew, and again with stature, masses, heights, distances "
+        "and duration a little changed up and down; everybody re-plans. The changes are as large as what they do stays "
+        "in proportion.",
         allow_abbrev=False,
     )
     parser.add_argument(
@@ -41,7 +40,7 @@ def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], in
     parser.add_argument(
         "--set", action="append", default=[], dest="overrides", metavar="KEY=VALUE", help="as with solve"
     )
-    parser.add_argument("--json", action="store_true", help="print all derivatives as one JSON object")
+    parser.add_argument("--json", action="store_true", help="print all slopes as one JSON object")
     parser.add_argument("--plot", metavar="FILE", help="write a figure: .svg, .png or .pdf")
     parser.set_defaults(run=run)
 
@@ -56,7 +55,7 @@ def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = No
     plot = None if args.plot is None else Path(args.plot)
     if plot is not None and plot.suffix[1:] not in FORMATS:
         raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
-    scenario = _scenario(args.scenario, args.overrides)
+    scenario = load_scenario(args.scenario, args.overrides)
     from liftopt.sensitivity import study
 
     plan, workshop = _sharp_plan(scenario, say)
@@ -65,38 +64,32 @@ def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = No
         _write_plot(found, plot)
     if args.json:
         return json.dumps(study_dict(found), allow_nan=False) + "\n"
-    return _table(found) + ("" if plot is None else f"Written to {plot}\n")
+    return table(found) + ("" if plot is None else f"Written to {plot}\n")
 
 
 def study_dict(study: Study) -> dict[str, Any]:
-    """Return a study ready for JSON: slopes in the figures' units over the parameter's, infinite reaches as None."""
+    """Return a study ready for JSON: slopes in the figures' units over the parameter's."""
     return {
         "scenario": scenario_to_dict(study.plan.scenario),
         "figures": study.figures,
+        "busiest": list(study.busiest),
         "parameters": [
             {
                 "name": s.parameter.name,
                 "keys": list(s.parameter.keys),
                 "unit": s.parameter.unit,
                 "value": s.value,
-                "change": s.parameter.change,
+                "change": s.change,
                 "slopes": s.slopes,
                 "objective_by_envelope": s.envelope,
-                "slopes_hold_to": s.reach if math.isfinite(s.reach) else None,
-                "limit_there": s.limit,
+                "reliable": s.is_reliable,
+                "doubt": s.doubt or None,
+                "not_larger_because": s.beyond or None,
             }
             for s in study.sensitivities
         ],
         "left_out": [{"name": parameter.name, "why": why} for parameter, why in study.left_out],
     }
-
-
-def _scenario(source: str | None, overrides: list[str]) -> Scenario:
-    """Return the scenario of that name or file, or of the result in that folder."""
-    if source is None or not Path(source).is_dir():
-        return load_scenario(source, overrides)
-    with locked(Path(source), to_write=False):
-        return load_scenario(standing_result(Path(source)) / SCENARIO, overrides)
 
 
 def _sharp_plan(scenario: Scenario, say: Callable[[str], None] | None) -> tuple[Plan, Workshop]:
@@ -127,55 +120,53 @@ def _write_plot(study: Study, path: Path) -> None:
     write_whole("--plot", path, rendered(figure, path.suffix[1:]))
 
 
-def _table(study: Study) -> str:
+def table(study: Study) -> str:
+    """Return the table that the command prints."""
     human, robot = study.plan.problem.team.agents
-    busiest = [_busiest(study, i) for i in range(2)]
-    now = study.figures
+    now, busiest = study.figures, study.busiest
     joints = [name.partition("_")[2] for name in busiest]
     lines = [
         f"{study.plan.scenario.name}: J = {now['objective']:.5g}, effort of the person "
-        f"{now[f'effort {human.name}']:.4g}, of the robot {now[f'effort {robot.name}']:.4g} N2 m2 s,",
-        f"peaks {busiest[0]} {now[f'peak {busiest[0]}']:.2f} Nm and {busiest[1]} {now[f'peak {busiest[1]}']:.2f} Nm, "
-        f"the nearest to their limits; the person bears {100 * now[f'share {human.name}']:.1f} %.",
+        f"{now[f'effort {human.name}']:.4g}, of the robot {now[f'effort {robot.name}']:.4g} N2 m2 s; the person bears",
+        f"{100 * now[f'share {human.name}']:.1f} %. Nearest to their limits: "
+        + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in busiest)
+        + ".",
         "",
-        f"{'':17} {'':>11} {'J':>7} {'J':>7} {'person':>7} {'robot':>7} {joints[0]:>6} {joints[1]:>6} {'load':>6}",
-        f"{'what a change of':17} {'does':>11} {'% /+1%':>7} {'%':>7} {'%':>7} {'%':>7} {'Nm':>6} {'Nm':>6} {'%':>6}",
+        f"{'':17} {'':>12} {'':>7} {'effort':>15} {'':>6} {'torque used':>15}",
+        f"{'if this':17} {'':>12} {'J':>7} {'person':>7} {'robot':>7} {'load':>6} {joints[0]:>7} {joints[1]:>7} "
+        f"{'J':>7}",
+        f"{'changes':17} {'by':>12} {'%':>7} {'%':>7} {'%':>7} {'%':>6} {'%':>7} {'%':>7} {'%/+1%':>7}",
     ]
-    for s in sorted(study.sensitivities, key=lambda s: -abs(s.slopes["objective"] * s.parameter.change)):
-        change = s.parameter.change
-        shown = f"+{change:g} {s.parameter.unit}"
+    for s in sorted(study.sensitivities, key=lambda s: -abs(s.slopes["objective"] * s.change)):
         relative = {name: 100 * s.slopes[name] / now[name] for name in now}
-        efforts = [change * relative[f"effort {agent.name}"] for agent in (human, robot)]
-        peaks = [change * s.slopes[f"peak {name}"] for name in busiest]
+        efforts = [s.change * relative[f"effort {agent.name}"] for agent in (human, robot)]
+        used = [100 * s.change * s.slopes[f"used {name}"] for name in busiest]
         lines.append(
-            f"{s.parameter.name:17} {shown:>9}{'' if s.holds else ' !':2} "
-            f"{relative['objective'] * s.value / 100:+7.2f} {change * relative['objective']:+7.2f} "
-            f"{efforts[0]:+7.2f} {efforts[1]:+7.2f} {peaks[0]:+6.2f} {peaks[1]:+6.2f} "
-            f"{100 * change * s.slopes[f'share {human.name}']:+6.2f}"
+            f"{s.parameter.name:17} {_change(s):>10}{'' if s.is_reliable else ' !':2} "
+            f"{s.change * relative['objective']:+7.2f} {efforts[0]:+7.2f} {efforts[1]:+7.2f} "
+            f"{100 * s.change * s.slopes[f'share {human.name}']:+6.2f} {used[0]:+7.2f} {used[1]:+7.2f} "
+            f"{relative['objective'] * s.value / 100:+7.2f}"
         )
     return "\n".join([*lines, *_remarks(study)]) + "\n"
 
 
 def _remarks(study: Study) -> list[str]:
-    lines = []
-    near = [s for s in study.sensitivities if not s.holds]
-    if near:
-        lines += [
-            "",
-            "! to first order only: within the change a limit becomes active or ceases to be. The slope of J does not",
-            "jump there; those of its parts, of torques and of the load do:",
-        ]
-        lines += [f"  {s.parameter.name} at {_reach(s)}: {s.limit}" for s in near]
+    """Return the lines below the table: what it says, and where it cannot be relied on."""
+    lines = [
+        "",
+        "Everybody re-plans, following the motion found. Half the change does half as much, and less the opposite of",
+        "more; J, efforts in percent of now; load that the person bears and share of the torque limit in points.",
+    ]
+    if doubted := [s for s in study.sensitivities if not s.is_reliable]:
+        lines += ["", "! not so here, a trend at best:"]
+        lines += [f"  {s.parameter.name} {_change(s)}: {s.doubt}" for s in doubted]
+    if shorter := [s for s in study.sensitivities if s.is_reliable and s.beyond]:
+        lines += ["", "Shown for a smaller change than usual, as a larger one is not in proportion:"]
+        lines += [f"  {s.parameter.name} {s.parameter.change:g} {s.parameter.unit}: {s.beyond}" for s in shorter]
+    if study.left_out:
+        lines.append("")
     return lines + [f"{parameter.name} is left out: {why}" for parameter, why in study.left_out]
 
 
-def _reach(s: Sensitivity) -> str:
-    return f"{s.reach:.2g} {s.parameter.unit}"
-
-
-def _busiest(study: Study, i: int) -> str:
-    """Return the joint of an agent whose peak is nearest to its limit."""
-    agent = study.plan.problem.team.agents[i]
-    limits = zip(agent.moving_joints, agent.limits.effort, strict=True)
-    shares = {name: study.figures[f"peak {name}"] / limit for name, limit in limits}
-    return max(shares, key=lambda name: shares[name])
+def _change(s: Sensitivity) -> str:
+    return f"+{s.change:.3g} {s.parameter.unit}"

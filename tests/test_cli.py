@@ -105,7 +105,7 @@ def _error_line(capsys: pytest.CaptureFixture[str]) -> str:
         (["--set", "robot.model=hal"], "robot.model = 'hal': must be"),
         (["nosuch.toml"], "nosuch.toml: no such file"),
         (["two\nlines.toml"], "two lines.toml: no such file"),
-        (["."], ".: is not a file"),
+        (["."], ".: is not a file, nor a result folder with a scenario.toml"),
         (["--out", "a_file"], "--out = 'a_file': cannot be written: Not a directory"),
         (["--out", "a_file/below"], "--out = 'a_file/below': cannot be written: Not a directory"),
         (["--out", "x" * 300], "cannot be written: File name too long"),
@@ -226,14 +226,6 @@ def test_crosscheck_passes_its_verdict_on(monkeypatch: pytest.MonkeyPatch, capsy
     assert main(["crosscheck", "--samples", "3"]) == 3
     assert asked == [(7, 0), (3, 0)]
     assert capsys.readouterr().out == "the table\nthe table\n"
-
-
-@pytest.mark.parametrize("arguments", [[], ["solv"], ["solve", "--sett", "a=1"], ["solve", "a", "b"]])
-def test_wrong_usage_is_exit_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as caught:
-        main(arguments)
-    assert caught.value.code == 2
-    assert "usage: liftopt" in capsys.readouterr().err
 
 
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:

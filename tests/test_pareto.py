@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
+from matplotlib import rc_context
 
 from liftopt.cli import main
 from liftopt.lift import lift
-from liftopt.pareto import Front, pareto_front, weights_at
+from liftopt.pareto import Front, pareto_front, ratio_text, weights_at
+from liftopt.pareto_command import front_dict, table
 from liftopt.scenario import Scenario, load_scenario
+from liftopt.viz.plots_pareto import pareto_figure
+from liftopt.viz.plots_style import STYLE
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
 SET = [word for entry in ENTRIES for word in ("--set", entry)]
@@ -94,7 +101,7 @@ def test_command_writes_table_json_and_figures(
     monkeypatch.setattr("liftopt.pareto.pareto_front", given)
     assert main(["pareto", "table5_near", "--points", "5", "--out", str(tmp_path), *SET]) == 0
     assert asked == [(front.scenario, 5)]
-    assert "1.98 : 0.0198" in capsys.readouterr().out
+    assert "100 : 1" in capsys.readouterr().out
     with (tmp_path / "pareto.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     found = json.loads((tmp_path / "pareto.json").read_text(encoding="utf-8"))
@@ -119,3 +126,49 @@ def test_wrong_use_is_refused(words: list[str], said: str, tmp_path: Path, capsy
     assert main(["pareto", *words, "--out", str(tmp_path / "new")]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
+
+
+def test_terminal_and_figure_tell_the_same_ratios(front: Front) -> None:
+    """The ratio with 1 for the smaller weight, by hand; the figure's labels start with what the table's rows do."""
+    for weights, text in (((0.0198, 1.98), "1 : 100"), ((1.0, 1.0), "1 : 1"), ((3.98, 0.1), "39.8 : 1")):
+        assert ratio_text(weights) == text
+    rows = [line.strip() for line in table(front_dict(front)).splitlines()]
+    labels = [text.get_text() for text in pareto_figure(front).axes[0].texts]
+    assert "1 : 1" in {label.partition(",")[0] for label in labels}
+    for label in labels:
+        assert any(row.startswith(label.partition(",")[0] + "  ") for row in rows), label
+
+
+@pytest.mark.parametrize("count", [3, 11, 60])
+@pytest.mark.parametrize("bend", [0.02, 1.0])
+def test_labels_cover_neither_each_other_nor_the_curve(front: Front, count: int, bend: float) -> None:
+    """On a straight and on a bent front of few and many points: boxes of text as drawn, and samples of the curve."""
+    share = np.linspace(0.0, 1.0, count)
+    efforts = zip(30.0 * 100**share, 20.0 * 100 ** ((1 - share) ** (1 / bend)), strict=True)
+    points = [
+        replace(front.points[0], efforts=(float(a), float(b)), weights=weights_at(2.0, 2 - 4 * float(s)))
+        for s, (a, b) in zip(share, efforts, strict=True)
+    ]
+    with rc_context(STYLE):
+        figure = pareto_figure(replace(front, points=tuple(points), dominated=()))
+        axes = figure.axes[0]
+        figure.canvas.draw()
+        boxes = [text.get_window_extent() for text in axes.texts]
+    assert len(boxes) >= min(count, 8)
+    ends = {text.get_text().partition(",")[0] for text in axes.texts}
+    assert {"100 : 1", "1 : 100"} <= ends
+    corners = axes.transData.transform([point.efforts for point in points])
+    along = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(corners)])
+    for i, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:i])
+        assert not np.any(np.all((box.min < along) & (along < box.max), axis=1))
+        assert axes.bbox.x0 <= box.x0
+        assert box.x1 <= axes.bbox.x1
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        ticks = [
+            pair for m in (0, 1) for pair in zip(axis.get_ticklocs(minor=m), axis.get_ticklabels(minor=m), strict=True)
+        ]
+        marks = [label.get_window_extent() for at, label in ticks if label.get_text() and low <= at <= high]
+        assert len(marks) >= 2
+        assert not any(mark.overlaps(other) for i, mark in enumerate(marks) for other in marks[:i])

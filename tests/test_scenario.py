@@ -20,10 +20,9 @@ from liftopt.scenario import (
     scenario_from_dict,
     scenario_to_dict,
     scenario_to_toml,
-    shipped_scenarios,
-    tomllib,
     with_overrides,
 )
+from liftopt.scenario_file import shipped_scenarios, tomllib
 from liftopt.scenario_schema import Number, Section, Whole, describe, entries
 
 DEFAULT = load_scenario()
@@ -191,8 +190,8 @@ def test_whole_numbers_are_taken_where_numbers_are_and_kept_as_floats() -> None:
 @pytest.mark.parametrize(
     ("statement", "message"),
     [
-        ("table.mas=3", r"^table\.mas = 3: unknown key; did you mean mass\?"),
-        ("tabel.mass=3", r"^tabel = .*: unknown key; did you mean table\?"),
+        ("table.mas=3", r"^table\.mas = 3: unknown key; did you mean table\.mass\?"),
+        ("tabel.mass=3", r"^tabel\.mass = 3: unknown key; did you mean table\.mass\?"),
         ("foo=3", "^foo = 3: unknown key; known here: schema, name, duration"),
         ("human.sex=femal", r"^human\.sex = 'femal': must be \"male\" or \"female\""),
         ("robot.model=ur5", r"^robot\.model = 'ur5': must be \"sawyer\""),
@@ -204,7 +203,7 @@ def test_whole_numbers_are_taken_where_numbers_are_and_kept_as_floats() -> None:
         ("name=", "^name = ''"),
         ("table.mass", "^--set = 'table.mass': must be KEY=VALUE"),
         ("table..mass=3", "^--set = "),
-        ("table.mass=3kg", "^table.mass = '3kg': must be a number from 0.05 to 50 kg"),
+        ("table.mass=3kg", r"^table.mass = '3kg': must be a number from 0.05 to 50 kg .*; write 3$"),
         ("table.mass=3\nduration=1", "^table.mass = "),
         ("task.start.human_distance=1.5", "must be below 1.45 m, or the object reaches behind the robot's base"),
         (

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter, ScalarFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
-from liftopt.pareto import Front, Point
+from liftopt.pareto import Front, Point, ratio_text
+from liftopt.viz.plots_labels import label_points
 from liftopt.viz.plots_style import BLUE, FAINT, INK, ORANGE, WIDTH
 
 HEIGHT = 4.3  # [in]
+EVEN, MANY = 3.0, 9.0  # ratios of an axis' ends: below, even steps; above, of a decade's numbers only 2 and 5
 
 
 def pareto_figure(front: Front) -> Figure:
-    """Return the front on logarithmic axes, each point with its weights; call it in ``rc_context(STYLE)``."""
+    """Return the front on logarithmic axes, points with their weights; call it in ``rc_context(STYLE)``."""
     figure = Figure(figsize=(WIDTH, HEIGHT))
     figure.subplots_adjust(left=0.1, right=0.97, top=0.93, bottom=0.12)
     axes = figure.subplots()
@@ -30,23 +33,35 @@ def pareto_figure(front: Front) -> Figure:
             *point.efforts, color=ORANGE, linestyle="none", marker="o", markersize=8, zorder=4,
             label="weights of the scenario",
         )  # fmt: skip
-    for point in front.points:
-        axes.annotate(_label(point), point.efforts, xytext=(6, 5), textcoords="offset points", fontsize=7.5, color=INK)
     axes.set(xscale="log", yscale="log", xlabel="effort of the person, ∫ Σ τ² dt [N² m² s]")
     axes.set_ylabel("effort of the robot, ∫ Σ τ² dt [N² m² s]")
     axes.set_title(
         f"{front.scenario.name}: who works more. At the points: weights person : robot, load the person bears"
     )
     axes.margins(x=0.14, y=0.1)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(ScalarFormatter())
-        axis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.5)))
+    for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        _mark(axis, limits[1] / limits[0])
     if front.dominated or own:
         axes.legend(loc="upper right")
+    # Those that tell most first: where there are many points, not all labels find room.
+    first = [*own, front.points[0], front.points[-1]]
+    order = sorted(front.points, key=lambda point: point not in first)
+    at, texts = [point.efforts for point in order], [_label(point) for point in order]
+    curve = [point.efforts for point in front.points]
+    label_points(axes, at, texts, curve, fontsize=7.5, color=INK)
     return figure
 
 
+def _mark(axis: Axis, ratio: float) -> None:
+    """Give a logarithmic axis numbers that do not run into each other; ``ratio`` of its greatest to its least."""
+    axis.set_major_formatter(ScalarFormatter())
+    if ratio < EVEN:
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_minor_locator(NullLocator())
+        return
+    axis.set_minor_locator(LogLocator(subs=(2.0, 5.0) if ratio > MANY else tuple(map(float, range(2, 10)))))
+    axis.set_minor_formatter(ScalarFormatter())
+
+
 def _label(point: Point) -> str:
-    human, robot = point.weights
-    ratio = f"{human / robot:.3g} : 1" if human >= robot else f"1 : {robot / human:.3g}"
-    return f"{ratio}, {100 * point.share:.0f} %"
+    return f"{ratio_text(point.weights)}, {100 * point.share:.0f} %"

@@ -16,14 +16,16 @@ from liftopt.viz.scene_arrow import arrow_commands, arrow_values
 from liftopt.viz.scene_commands import Command, clip, place, set_object
 from liftopt.viz.scene_mesh import Mesh, Ring, block, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
-from liftopt.viz.scene_person import person_parts
+from liftopt.viz.scene_person import SHIRT, person_parts
 from liftopt.viz.scene_sawyer import gripper_parts, sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
+from liftopt.viz.scene_shadow import shadow_commands
 
 Array = npt.NDArray[np.float64]
 WOOD: Colour = (0.78, 0.60, 0.38)
 PATH_COLOURS: dict[str, Colour] = {"human": (0.02, 0.45, 0.70), "robot": (0.90, 0.45, 0.0)}
 PATH_RADIUS = 0.004  # [m]
+SAME = 1e-4  # distance below which two parts are in one place [m]
 GHOST_COLOUR, GHOST_TINT, GHOST_OPACITY = (0.45, 0.25, 0.80), 0.65, 0.40
 
 
@@ -38,6 +40,7 @@ class Cast:
         offset: (3,) where it is put in the world [m].
         ghost: whether it is drawn see-through.
         sawyer: the manufacturer's ``sawyer_description`` folder, or None for our own primitives.
+        shirt: colour by which the person is told from another.
     """
 
     solution: Solution
@@ -46,13 +49,30 @@ class Cast:
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ghost: bool = False
     sawyer: Path | None = None
+    shirt: Colour = SHIRT
+
+    @property
+    def colour(self) -> Colour:
+        """By which this lift is told from another: that of the shirt, or of a ghost."""
+        return GHOST_COLOUR if self.ghost else self.shirt
 
 
-def lift_commands(cast: Cast) -> list[Command]:
-    """Return the viewer's commands that build one lift."""
+def lift_commands(cast: Cast, first: Cast | None = None) -> list[Command]:
+    """Return the viewer's commands that build one lift.
+
+    Args:
+        cast: the lift.
+        first: another in the same place; what does the same in both is not drawn again.
+    """
     commands = [place(cast.root, translation(*cast.offset))]
     opacity = GHOST_OPACITY if cast.ghost else 1.0
-    for part in parts_of(cast):
+    parts, others = parts_of(cast), [] if first is None else parts_of(first)
+    twins = {(part.body, part.name): part for part in others}
+    if first is None:
+        commands += shadow_commands(cast.root, [part for part in parts if _stands_still(part, cast)])
+    for part in parts:
+        if first is not None and _is_same(part, cast, twins.get((part.body, part.name)), first):
+            continue
         mesh, colour = part.mesh, _tinted(part.colour) if cast.ghost else part.colour
         if part.body != GROUND:
             mesh = mesh.seen_from(np.asarray(np.linalg.inv(cast.playback.zero[part.body])))
@@ -95,11 +115,32 @@ def parts_of(cast: Cast) -> list[Part]:
     else:
         arm = sawyer_mesh_parts(cast.sawyer, world_base)
     return [
-        *person_parts(subject_of(scenario.human)),
+        *person_parts(subject_of(scenario.human), cast.shirt),
         *arm,
         *gripper_parts(world_base, robot.tool.length),
         Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)),
     ]
+
+
+def _stands_still(part: Part, cast: Cast) -> bool:
+    if part.body in (GROUND, cast.solution.held.name):
+        return part.body == GROUND
+    return bool(np.ptp(cast.playback.bodies[part.body].position, axis=0).max() < SAME)
+
+
+def _is_same(part: Part, cast: Cast, twin: Part | None, first: Cast) -> bool:
+    """Whether a part has the shape of another lift's and is where that one is all the time."""
+    if twin is None or part.mesh.vertices.shape != twin.mesh.vertices.shape:
+        return False
+    if not np.allclose(part.mesh.vertices, twin.mesh.vertices, rtol=0.0, atol=SAME):
+        return False
+    if part.body == GROUND:
+        return True
+    here, there = cast.playback.bodies[part.body], first.playback.bodies[part.body]
+    return here.position.shape == there.position.shape and all(
+        np.allclose(a, b, rtol=0.0, atol=SAME)
+        for a, b in ((here.position, there.position), (here.quaternion, there.quaternion))
+    )
 
 
 def _tinted(colour: Colour) -> Colour:

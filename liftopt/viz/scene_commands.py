@@ -29,11 +29,22 @@ def clip(path: str, time: Array, values: dict[str, Array]) -> Command:
     return {"path": path, "clip": {"fps": 1, "name": "lift", "tracks": tracks}}
 
 
-def set_object(path: str, mesh: Mesh, colour: Colour, opacity: float = 1.0, on_top: bool = False) -> Command:
-    """Return the command that draws ``mesh`` at ``path``, in three.js' own format; ``on_top`` of all that hides it."""
+def set_object(
+    path: str, mesh: Mesh, colour: Colour, opacity: float = 1.0, on_top: bool = False, colours: Array | None = None
+) -> Command:
+    """Return the command that draws a mesh, in three.js' own format.
+
+    Args:
+        path: of its node.
+        mesh: what is drawn.
+        colour: of all of it.
+        opacity: below 1 it is see-through, and gives way where it lies in the face of something solid.
+        on_top: of all that hides it.
+        colours: (n, 4) red, green, blue and opacity of each vertex, which ``colour`` and ``opacity`` give way to.
+    """
     red, green, blue = (round(255 * value) for value in colour)
     vertices = np.round(mesh.vertices, DECIMALS) + 0.0
-    geometry = {
+    geometry: dict[str, Any] = {
         "uuid": f"geometry{path}",
         "type": "BufferGeometry",
         "data": {
@@ -44,16 +55,23 @@ def set_object(path: str, mesh: Mesh, colour: Colour, opacity: float = 1.0, on_t
             },
         },
     }
+    see_through = opacity < 1.0 or colours is not None
     # Lit at the vertices: with smooth figures as good as by the pixel, and twice as fast without a graphics card.
     material = {
         "uuid": f"material{path}",
         "type": "MeshLambertMaterial",
         "color": (red << 16) + (green << 8) + blue,
-        "transparent": opacity < 1.0,
+        "transparent": see_through,
         "opacity": opacity,
-        "depthWrite": opacity >= 1.0,
+        "depthWrite": not see_through,
         "depthTest": not on_top,
     }
+    if opacity < 1.0:
+        material |= {"polygonOffset": True, "polygonOffsetFactor": 2, "polygonOffsetUnits": 2}
+    if colours is not None:
+        values = np.round(colours, DECIMALS).ravel().tolist()
+        geometry["data"]["attributes"]["color"] = {"itemSize": 4, "type": "Float32Array", "array": values}
+        material |= {"vertexColors": True, "color": 0xFFFFFF}
     item: Command = {"uuid": f"mesh{path}", "type": "Mesh", "geometry": geometry["uuid"], "material": material["uuid"]}
     if on_top:
         item["renderOrder"] = 10

@@ -31,7 +31,7 @@ TO_SIDE = (0.0, 1.0, 0.0)
 SLACK = 1.06
 
 
-def person_parts(subject: Subject) -> list[Part]:
+def person_parts(subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
     """Return the subject upright at the zero pose: feet at the origin, facing +X, arms hanging, palms forward.
 
     Legs and pelvis are on ``human_GT3``, the trunk with head and resting left arm on ``human_Q3``, the right arm on
@@ -41,7 +41,7 @@ def person_parts(subject: Subject) -> list[Part]:
     left = _arm(subject, LEFT)
     parts = [
         *_legs(subject),
-        Part("human_Q3", "trunk", SHIRT, _trunk(subject)),
+        Part("human_Q3", "trunk", shirt, _trunk(subject)),
         *head_parts(subject, "human_Q3", SKIN),
     ]
     for arm, bodies, side in (
@@ -50,7 +50,7 @@ def person_parts(subject: Subject) -> list[Part]:
     ):
         sleeve, upper, forearm, hand = arm
         parts += [
-            Part(bodies[0], f"{side}_sleeve", SHIRT, sleeve),
+            Part(bodies[0], f"{side}_sleeve", shirt, sleeve),
             Part(bodies[0], f"{side}_upper_arm", SKIN, upper),
             Part(bodies[1], f"{side}_forearm", SKIN, forearm),
             Part(bodies[2], f"{side}_hand", SKIN, hand),

@@ -15,15 +15,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liftopt.errors import InputError
 from liftopt.solution import Solution
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
+from liftopt.viz.scene_part import Colour
 from liftopt.viz.scene_stage import stage_commands
 
+Array = npt.NDArray[np.float64]
 LONGEST_ARROW = 0.40  # [m]: of the largest force shown
 APART = 2.2  # [m] between two lifts side by side, along Y
+SECOND_SHIRT: Colour = (0.10, 0.52, 0.38)
+ABOVE_HEAD = 0.10  # [m]: of the name of a lift
+# Around joints: what of the person, the robot and the hands is in view [m].
+BODY, HANDS = 0.25, 0.18
+ROBOT_ABOVE_BASE = 0.65  # [m]: Sawyer's head
+BOTH = ("human", "robot")
 
 
 def playback_page(
@@ -45,7 +54,7 @@ def playback_page(
     commands = stage_commands()
     tracks: list[dict[str, Any]] = []
     for cast in casts:
-        commands += lift_commands(cast)
+        commands += lift_commands(cast, casts[0] if cast.ghost else None)
         tracks += lift_tracks(cast, scale)
     data = {
         "commands": commands,
@@ -62,7 +71,7 @@ def _casts(solution: Solution, other: Solution | None, ghost: bool, sawyer: Path
     casts = [Cast(solution, playback_of(solution), "/lift", sawyer=sawyer)]
     if other is not None:
         offset = (0.0, 0.0, 0.0) if ghost else (0.0, APART, 0.0)
-        casts.append(Cast(other, playback_of(other), "/other", offset, ghost, sawyer))
+        casts.append(Cast(other, playback_of(other), "/other", offset, ghost, sawyer, SECOND_SHIRT))
     return casts
 
 
@@ -93,25 +102,34 @@ def _facts(cast: Cast, name: str) -> dict[str, Any]:
         "status": solution.status,
         "solved": solution.solved,
         "ghost": cast.ghost,
+        "colour": "#" + "".join(f"{round(255 * value):02x}" for value in cast.colour),
+        "head": [0.0, cast.offset[1], solution.scenario.human.stature + ABOVE_HEAD],
         "time": np.round(playback.time, 5).tolist(),
         "force": sizes,
         "height": np.round(playback.bodies[solution.held.name].position[:, 2], 4).tolist(),
     }
 
 
-def _sight(casts: Sequence[Cast]) -> dict[str, list[float]]:
-    """Return the points [m] that the camera presets look at and keep in view."""
-    middle = 0.5 * max(cast.solution.scenario.task.standing_distance for cast in casts)
-    y = 0.5 * sum(cast.offset[1] for cast in casts) if len(casts) > 1 else 0.0
-    held = np.vstack([cast.playback.bodies[cast.solution.held.name].position + cast.offset for cast in casts])
-    return {
-        "middle": [middle, y, 0.95],
-        "hands": np.round(held.mean(axis=0), 4).tolist(),
-        "human": [0.15, 0.0, 1.25],
-        "robot": [2.0 * middle - 0.15, 0.0, 1.15],
-        "half_width": [middle + 0.65],
-        "half_depth": [y],
-    }
+def _sight(casts: Sequence[Cast]) -> dict[str, list[list[float]]]:
+    """Return the boxes [m] that the camera presets keep in view: lowest and highest corner of each."""
+    boxes: dict[str, list[Array]] = {"human": [], "robot": [], "hands": []}
+    for cast in casts:
+        stature = cast.solution.scenario.human.stature
+        boxes["human"].append(np.array([[-BODY, -BODY, 0.0], [BODY, BODY, stature]]) + cast.offset)
+        for agent, force in cast.playback.forces.items():
+            bodies = cast.playback.bodies.items()
+            joints = [track.position for name, track in bodies if name.startswith(f"{agent}_")]
+            boxes[agent].append(np.vstack([np.zeros((0, 3)), *joints, force.point]) + cast.offset)
+            boxes["hands"].append(force.point + cast.offset)
+        base = cast.solution.scenario.task.standing_distance
+        top = cast.solution.scenario.robot.base_height + ROBOT_ABOVE_BASE
+        boxes["robot"].append(np.array([[base - 0.2, -0.35, 0.0], [base + 0.5, 0.35, top]]) + cast.offset)
+    sight = {}
+    for name, room in (("human", 0.0), ("robot", 0.05), ("hands", HANDS)):
+        points = np.vstack(boxes[name])
+        sight[name] = [points.min(axis=0) - room, points.max(axis=0) + room]
+    sight["all"] = [np.minimum(*(sight[who][0] for who in BOTH)), np.maximum(*(sight[who][1] for who in BOTH))]
+    return {name: np.round(box, 3).tolist() for name, box in sight.items()}
 
 
 def _title(solution: Solution, other: Solution | None) -> str:
@@ -129,6 +147,7 @@ def _fill(data: dict[str, Any], title: str) -> str:
         "@LICENCES@": "\n".join(licences).replace("--", "- -").replace("</", "<\\/"),
         "@VIEWER@": (viewer / "main.min.js").read_text(encoding="utf-8").replace("</script", "<\\/script"),
         "@DATA@": text,
+        "@CAMERA@": (assets / "camera.js").read_text(encoding="utf-8"),
         "@SCRIPT@": (assets / "playback.js").read_text(encoding="utf-8"),
     }
     page = (assets / "playback.html").read_text(encoding="utf-8")

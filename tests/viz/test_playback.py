@@ -14,7 +14,7 @@ from liftopt.errors import InputError
 from liftopt.multibody.subject import Subject
 from liftopt.scene import agents_of
 from liftopt.viz.playback import Playback, continuous, playback_of
-from liftopt.viz.scene import Cast, parts_of
+from liftopt.viz.scene import Cast, lift_commands, parts_of
 from liftopt.viz.scene_arrow import arrow_values
 from liftopt.viz.scene_mesh import Mesh, ball, block, capsule, cylinder
 from liftopt.viz.scene_person import person_parts
@@ -141,6 +141,43 @@ def test_every_part_is_a_closed_body_seen_from_outside(solution: Any, playback: 
     assert moved <= set(playback.bodies)
     assert {"human_GT3", "human_Q3", "human_Q6", "human_Q8", "human_Q10", "table"} <= moved
     assert {f"robot_Q{i}" for i in range(1, 8)} <= moved
+
+
+def test_the_floor_is_dark_under_all_that_stands_on_it_and_nothing_else(solution: Any, playback: Playback) -> None:
+    """Soles and the pedestal's feet: their lowest vertices against the corners of the dark mesh, which is 3 mm high."""
+    cast = Cast(solution, playback, "/lift")
+    (shadow,) = (command for command in lift_commands(cast) if command["path"] == "/lift/shadow")
+    attributes = shadow["object"]["geometries"][0]["data"]["attributes"]
+    corners = np.reshape(attributes["position"]["array"], (-1, 3))
+    dark = np.reshape(attributes["color"]["array"], (-1, 4))[:, 3]
+    assert np.all(corners[:, 2] == 0.003)
+    parts = [part for part in parts_of(cast) if part.name.endswith("_sole") or part.name == "pedestal_legs"]
+    assert len(parts) == 3
+    low = np.vstack([part.mesh.vertices[part.mesh.vertices[:, 2] < 0.02, :2] for part in parts])
+    near = np.linalg.norm(low[:, None] - corners[None, :, :2], axis=2)
+    assert np.where(near < 0.05, dark, 0.0).max(axis=1).min() > 0.3
+    assert near.min(axis=0).max() < 0.2  # nor far from them
+    assert near.min(axis=0)[dark > 0.3].max() < 0.06
+
+
+def test_a_ghost_is_drawn_where_it_differs_only(solution: Any, playback: Playback) -> None:
+    """Of a ghost that moves alike nothing; of one in which the robot stands elsewhere all of the robot."""
+    first = Cast(solution, playback, "/lift")
+    same = Cast(solution, playback, "/other", ghost=True)
+    assert [path for path in _drawn(lift_commands(same, first)) if "/body/" in path] == []
+    aside = {
+        name: replace(track, position=track.position + 0.1) if name.startswith("robot") else track
+        for name, track in playback.bodies.items()
+    }
+    other = Cast(solution, replace(playback, bodies=aside), "/other", ghost=True)
+    bodies = {path.split("/")[3] for path in _drawn(lift_commands(other, first)) if "/body/" in path}
+    assert bodies == {f"robot_Q{i}" for i in range(1, 8)}
+    moved = [part.name for part in parts_of(first) if part.body == "robot_Q7"]
+    assert {f"/other/body/robot_Q7/{name}" for name in moved} <= _drawn(lift_commands(other, first))
+
+
+def _drawn(commands: list[dict[str, Any]]) -> set[str]:
+    return {command["path"] for command in commands if command["type"] == "set_object"}
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@
     viewer.scene.traverse((object) => {
       if (object.isMesh) object.receiveShadow = object.parent.name === "floor";
       if (!object.isDirectionalLight) return;
-      const reach = 2.2 + Math.hypot(...data.sight.middle);
+      const reach = 2.2 + Math.hypot(...data.sight.all[1]) / 2;
       Object.assign(object.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, far: 20 });
       object.shadow.mapSize.set(1024, 1024);
       object.shadow.bias = -0.002;
@@ -94,6 +94,7 @@
       }
       state.last = now;
     }
+    view.place_names();
     requestAnimationFrame(tick);
   }
 
@@ -109,7 +110,21 @@
   const table = add(element("facts"), "table", "");
   const heads = add(table, "tr", "");
   add(heads, "th", "");
-  data.lifts.forEach((lift) => add(heads, "th", lift.name + (lift.ghost ? " (ghost)" : "")));
+  const called = (lift) => lift.name + (lift.ghost ? " (ghost)" : "");
+  function chip(parent, colour) {
+    const mark = document.createElement("span");
+    mark.className = "chip";
+    mark.style.background = colour;
+    parent.prepend(mark);
+  }
+  data.lifts.forEach((lift) => {
+    const head = add(heads, "th", called(lift));
+    if (data.lifts.length < 2) return;
+    chip(head, lift.colour);
+    const name = add(element("names"), "div", called(lift));
+    name.className = "name";
+    chip(name, lift.colour);
+  });
   function row(colour, text, key) {
     const line = add(table, "tr", "");
     const name = add(line, "td", text);
@@ -128,58 +143,9 @@
   scale.textContent = `arrows: force of each hand on the table, 10 N is ${(1000 * data.metres_per_newton).toFixed(0)} cm`;
   element("facts").append(scale);
 
-  // ---- camera ---------------------------------------------------------------------------------------------------
-  const camera = viewer.camera;
-  camera.fov = 38;
-  const controls = viewer.controls;
-  // The scene is turned to Y up: world (x, y, z) stands at (x, z, -y).
-  const turned = ([x, y, z]) => [x, z, -y];
-
-  const sight = data.sight;
-  function away(point, direction, distance) {
-    const size = Math.hypot(...direction);
-    return point.map((value, i) => value + (direction[i] / size) * distance);
-  }
-  function distance_for(half_width, half_height) {
-    const half = Math.tan((camera.fov * Math.PI) / 360);
-    const aspect = Math.max(camera.aspect, 0.3);
-    return Math.max(half_height / half, half_width / (half * aspect)) * 1.08;
-  }
-  const depth = sight.half_depth[0];
-  const presets = {
-    "three-quarter": () => [sight.middle, [0.14, -1, 0.26 + 0.12 * depth], distance_for(sight.half_width[0], 1.28) + depth],
-    side: () => [sight.middle, [0, -1, 0.02], distance_for(sight.half_width[0], 1.35) + depth],
-    front: () => [sight.middle, [1, -0.6, 0.3], distance_for(sight.half_width[0], 1.35) + depth],
-    top: () => [sight.middle, [0, -0.001, 1], distance_for(sight.half_width[0], 1.2 + depth) + 1],
-    person: () => [sight.human, [0.75, -1, 0.18], distance_for(0.7, 0.75)],
-    robot: () => [sight.robot, [-0.9, 0.9, 0.25], distance_for(0.7, 0.85)],
-    hands: () => [sight.hands, [-0.1, -1, 0.35], distance_for(0.55, 0.5) + 2 * depth],
-  };
-  let chosen = null;
-  function look(name) {
-    chosen = name;
-    const [target, direction, distance] = presets[name]();
-    camera.position.set(...turned(away(target, direction, distance)));
-    controls.target.set(...turned(target));
-    controls.update();
-    viewer.set_dirty();
-    for (const button of element("views").children) {
-      button.setAttribute("aria-pressed", String(button.textContent === name));
-    }
-  }
-  Object.keys(presets).forEach((name, i) => {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = name;
-    button.title = `${name} view (${i + 1})`;
-    button.addEventListener("click", () => look(name));
-    element("views").append(button);
-  });
-  controls.addEventListener("start", () => {
-    chosen = null;
-    for (const button of element("views").children) button.setAttribute("aria-pressed", "false");
-  });
-  window.addEventListener("resize", () => { if (chosen) look(chosen); });
+  // ---- camera and names -----------------------------------------------------------------------------------------
+  const view = make_camera(viewer, data, element);
+  const { look, presets } = view;
 
   // ---- controls -------------------------------------------------------------------------------------------------
   element("timeline").max = data.duration;
@@ -200,7 +166,7 @@
   window.addEventListener("keydown", (event) => {
     if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
     const step = event.shiftKey ? 0.1 : 0.02;
-    const names = Object.keys(presets);
+    const names = presets;
     if (event.key === " ") play(!state.playing);
     else if (event.key === "ArrowLeft") { play(false); seek(state.time - step); }
     else if (event.key === "ArrowRight") { play(false); seek(state.time + step); }
@@ -228,6 +194,6 @@
     const from_scene = viewer.scene.matrixWorld.clone().invert();
     return from_scene.multiply(node.object.matrixWorld).elements.slice();
   }
-  window.liftopt = { viewer, state, seek, play, look, placement, data, presets: Object.keys(presets), ready: true,
+  window.liftopt = { viewer, state, seek, play, look, placement, data, presets, ready: true,
                      first_picture: performance.now() };
 })();

@@ -21,7 +21,8 @@ from liftopt.collocation.spline import Mesh, RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
 from liftopt.lift import lift
-from liftopt.scenario import Scenario, load_scenario, shipped_scenarios, with_overrides
+from liftopt.scenario import Scenario, load_scenario, with_overrides
+from liftopt.scenario_file import shipped_scenarios
 from liftopt.scene import agents_of, object_of, task_of
 
 extension = pytest.importorskip("_liftopt_banded")
