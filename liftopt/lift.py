@@ -27,7 +27,7 @@ from liftopt.remedies import Remedies
 from liftopt.scenario import Scenario
 from liftopt.scene import motions_of
 from liftopt.scouting import scout
-from liftopt.solution import Solution, StartRecord
+from liftopt.solution import CUT_SHORT, Solution, StartRecord
 from liftopt.verify import CLOSURE_BETWEEN_KNOTS
 from liftopt.workshop import Workshop
 
@@ -44,7 +44,7 @@ SEEDS_A_TRY = 2
 # each: half of those that converge take fewer.
 WIDER, LEAN = 3, 60
 SURE_STARTS = 2  # tried by IPOPT where the scenario's solver found nothing
-CUT = "the time limit of {limit:g} s cut the search short ({stage})"
+CUT = "the time limit of {limit:g} s {what} ({stage})"
 GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}
 
 
@@ -111,7 +111,7 @@ class Search:
     def _note_time(self) -> None:
         """Note what was being done when time was over, if it is."""
         if not self.cut and time.monotonic() > self.deadline:
-            self.cut = CUT.format(limit=self.scenario.solver.time_limit, stage=self.stage)
+            self.cut = CUT.format(limit=self.scenario.solver.time_limit, what=CUT_SHORT, stage=self.stage)
             self.notes.append(self.cut)
 
     def _finish(self) -> None:

@@ -16,6 +16,7 @@ from liftopt.trajectory import AgentTrajectory, ObjectTrajectory
 
 Array = npt.NDArray[np.float64]
 SOLVED = "solved"
+CUT_SHORT = "cut the search short"  # by time; in notes, and in the status where there is no solution
 
 
 @dataclass(frozen=True)

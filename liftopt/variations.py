@@ -18,7 +18,7 @@ from liftopt.collocation.detours import detours, rests
 from liftopt.collocation.guess import Start
 from liftopt.collocation.mirrors import mirrored
 from liftopt.collocation.other_ways import other_ways
-from liftopt.collocation.postures import PostureSolver
+from liftopt.collocation.postures import PostureSolver, rounded
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.multistart import solve_each
@@ -75,7 +75,7 @@ def vary(
     by = rests(problem, postures, rng, deadline)
 
     def varied(result: SolverResult) -> _Varied:
-        x, kinematics = result.x, postures.kinematics
+        x, kinematics = rounded(result.x), postures.kinematics
         kinds: tuple[Callable[[], Iterable[Start]], ...] = (
             lambda: mirrored(problem, x),
             lambda: detours(problem, kinematics, x, by, deadline),

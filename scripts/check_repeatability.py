@@ -114,6 +114,7 @@ def answer(overrides: Sequence[str], workshop: Any) -> dict[str, Any]:
     """Solve one scenario and return what is compared."""
     from liftopt.lift import lift
     from liftopt.scenario import load_scenario
+    from liftopt.solution import CUT_SHORT
 
     began, used = time.monotonic(), time.process_time()
     solution = lift(load_scenario("table5", list(overrides)), workshop=workshop)
@@ -132,7 +133,7 @@ def answer(overrides: Sequence[str], workshop: Any) -> dict[str, Any]:
         "kept": solution.kept_start,
         "intervals": solution.intervals,
         "digest": digest.hexdigest(),
-        "cut": any("cut the search short" in note for note in solution.notes),
+        "cut": any(CUT_SHORT in note for note in solution.notes),
         "seconds": time.monotonic() - began,
         "cpu_seconds": time.process_time() - used,
     }

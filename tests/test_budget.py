@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from liftopt.assessment.assess import assess
+from liftopt.assessment.finding import CAUTION
 from liftopt.lift import Search, lift
 from liftopt.scenario import load_scenario
 from liftopt.scene import motions_of
@@ -68,6 +70,8 @@ def test_where_time_cuts_the_search_short_the_solution_says_so_and_where(
     words = f"the time limit of 3600 s cut the search short ({stage}"
     (note,) = (note for note in solution.notes if "time limit" in note)
     assert note.startswith(words)
+    cautions = {finding.code for finding in assess(solution) if finding.severity == CAUTION}
+    assert "mathematics.time_limit" in cautions
     assert solution.solved or words in solution.status
 
 

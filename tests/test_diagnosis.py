@@ -135,7 +135,7 @@ def test_a_change_that_leaves_what_a_model_can_be_is_no_remedy() -> None:
     scenario = load_scenario("table5", [*BANDED, "robot.base_height=0.3"])
     search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
     (lever,) = [lever for lever in remedies.levers(scenario) if lever.keys == ("robot.base_height",)]
-    assert remedies.Remedies(search, [], time.monotonic() + 60.0)._plan(lever, -29, None) is None
+    assert remedies.Remedies(search, [])._plan(lever, -29, None) is None
 
 
 def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(

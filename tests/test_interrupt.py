@@ -61,7 +61,7 @@ def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -
     from liftopt.lift import lift
     from liftopt.scenario import load_scenario
 
-    usual, evaluations = ipopt._Deadline.eval_buffer, []
+    usual, evaluations = ipopt._Stop.eval_buffer, []
 
     def eval_and_interrupt(self: Any, arguments: Any, results: Any) -> int:
         evaluations.append(None)
@@ -69,7 +69,7 @@ def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -
             signal.raise_signal(signal.SIGINT)
         return usual(self, arguments, results)
 
-    monkeypatch.setattr(ipopt._Deadline, "eval_buffer", eval_and_interrupt)
+    monkeypatch.setattr(ipopt._Stop, "eval_buffer", eval_and_interrupt)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):

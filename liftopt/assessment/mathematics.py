@@ -8,7 +8,7 @@ from math import inf, isfinite
 from liftopt.assessment.finding import CAUTION, ERROR, INFO, MATHEMATICS, VERDICT, Finding
 from liftopt.checks import BETWEEN_KNOTS
 from liftopt.reasons import Remedy
-from liftopt.solution import Solution
+from liftopt.solution import CUT_SHORT, Solution
 
 LARGE_ERROR = 0.05  # of the objective; more is a caution
 EXCEEDED = 1e-3  # excess between knots worth a word, in its unit
@@ -109,7 +109,10 @@ def _starts(solution: Solution) -> Iterator[Finding]:
 
 def _notes(solution: Solution) -> Iterator[Finding]:
     for note in solution.notes:
-        yield Finding(f"{MATHEMATICS}.note", INFO, "from the solver", _sentence(note))
+        if CUT_SHORT in note:
+            yield Finding(f"{MATHEMATICS}.time_limit", CAUTION, f"time {CUT_SHORT}", _sentence(note))
+        else:
+            yield Finding(f"{MATHEMATICS}.note", INFO, "from the solver", _sentence(note))
 
 
 def _sentence(text: str) -> str:

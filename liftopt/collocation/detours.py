@@ -38,7 +38,7 @@ def rests(problem: Problem, postures: PostureSolver, rng: np.random.Generator, d
     """
     anywhere = np.full(OBJECT_SIZE, np.nan)
     seeds = [seed_coordinates(problem, anywhere, rng if n else None) for n in range(SEEDS)]
-    found = [posture for posture in postures.search(anywhere, seeds, deadline) if posture]
+    found = [posture.rounded() for posture in postures.search(anywhere, seeds, deadline) if posture]
     found.sort(key=lambda posture: posture.cost)
     if not found:
         return []

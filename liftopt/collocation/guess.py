@@ -143,9 +143,13 @@ def _ends(
 ) -> tuple[list[Posture], list[Posture]]:
     """Return postures at the start, also those that lead back from the end, and at the end."""
     task = problem.task
-    first = distinct(postures.search(task.start, seeds, deadline), SAME)
-    last = distinct(postures.search(task.end, [p.coordinates for p in first], deadline), SAME)
-    again = postures.search(task.start, [p.coordinates for p in last], deadline)
+
+    def found(pose: Array, seeds: list[Array]) -> list[Posture]:
+        return [posture.rounded() for posture in postures.search(pose, seeds, deadline) if posture]
+
+    first = distinct(found(task.start, seeds), SAME)
+    last = distinct(found(task.end, [p.coordinates for p in first]), SAME)
+    again = found(task.start, [p.coordinates for p in last])
     return distinct([*first, *again], SAME), last
 
 

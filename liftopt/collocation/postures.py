@@ -53,6 +53,10 @@ class Posture:
     force: Array
     cost: float
 
+    def rounded(self) -> Posture:
+        """Return it as something to start from; see ``DIGITS``."""
+        return Posture(rounded(self.coordinates), rounded(self.force), float(rounded(np.array(self.cost))))
+
 
 class PostureSolver:
     """Static postures of a team with the object at a given pose."""
