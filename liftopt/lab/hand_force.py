@@ -16,9 +16,7 @@ from liftopt.lab.sensor_table import SIGNATURE
 from liftopt.lab.text_file import Line, read_lines
 
 COLUMNS = ("time", "fx", "fy", "fz")
-UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | {
-    name: {"N": 1.0, "kN": 1000.0} for name in COLUMNS[1:]
-}
+UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | {name: {"N": 1.0, "kN": 1000.0} for name in COLUMNS[1:]}
 NAMED = re.compile(r"([a-z]+)\s*(?:[\[(](.*)[\])])?", re.IGNORECASE)
 LONGEST_STEP = 0.1  # s between samples, over which a hand's force changes much
 MUCH_LONGER = 3.0  # times the recording: with such steps, a series in another unit of time

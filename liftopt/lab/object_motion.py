@@ -98,9 +98,7 @@ def lifts(time: Array, position: Array) -> tuple[tuple[int, int], ...]:
     step, last = float(np.median(np.diff(time))), len(position) - 1
     still = _still(position, max(round(LYING_FOR / step), 2))
     places = [position[0], position[-1], *(np.median(position[a : b + 1], axis=0) for a, b in runs(still))]
-    at_place = still | (
-        np.min([np.linalg.norm(position - place, axis=1) for place in places], axis=0) <= AT_REST
-    )
+    at_place = still | (np.min([np.linalg.norm(position - place, axis=1) for place in places], axis=0) <= AT_REST)
     away = ~at_place
     for first, end in runs(at_place):
         if first > 0 and end < last and (end - first + 1) * step < AT_PLACE:
@@ -119,9 +117,7 @@ def _still(position: Array, window: int) -> npt.NDArray[np.bool_]:
     return still
 
 
-def _turns(
-    time: Array, position: Array, rotation: Array, unseen: npt.NDArray[np.bool_], source: str
-) -> Array:
+def _turns(time: Array, position: Array, rotation: Array, unseen: npt.NDArray[np.bool_], source: str) -> Array:
     """Return (F, 3, 3) with the frames filled in which the object is out of sight."""
     seen = np.flatnonzero(~unseen)
     for first, last in runs(unseen):

@@ -83,9 +83,7 @@ def without_far_points(recording: Recording) -> Recording:
     return replace(recording, points=points, notes=(*recording.notes, *notes))
 
 
-def without_outliers(
-    recording: Recording, groups: Sequence[ShapeGroup]
-) -> tuple[Recording, tuple[Outlier, ...]]:
+def without_outliers(recording: Recording, groups: Sequence[ShapeGroup]) -> tuple[Recording, tuple[Outlier, ...]]:
     """Return the recording with outliers taken as not seen, and these.
 
     Args:
@@ -118,9 +116,7 @@ def without_outliers(
     return replace(recording, points=points), tuple(found)
 
 
-def check_enough(
-    recording: Recording, groups: Mapping[str, tuple[str, ...]], outliers: tuple[Outlier, ...]
-) -> None:
+def check_enough(recording: Recording, groups: Mapping[str, tuple[str, ...]], outliers: tuple[Outlier, ...]) -> None:
     """Check that outliers leave enough of each segment of the person.
 
     Args:
