@@ -164,7 +164,7 @@ def figures(plan: Plan) -> dict[str, float]:
         found[f"share {agent.name}"] = float(np.nanmean(share))
     fine = np.linspace(0.0, 1.0, FINER * spline.intervals + 1)
     for agent in motion_at(problem, spline, x, fine).agents:
-        names = [agent.joint_names[j] for j in np.flatnonzero(agent.moving)]
+        names = agent.moving_joints
         torques, used = np.abs(agent.tau[:, agent.moving]).max(axis=0), limit_share(agent).max(axis=0)
         found |= {f"peak {name}": float(torque) for name, torque in zip(names, torques, strict=True)}
         found |= {f"used {name}": float(share) for name, share in zip(names, used, strict=True)}
@@ -190,8 +190,8 @@ class _Differences:
         self.busiest = tuple(max(names, key=lambda name: self.now[f"used {name}"]) for names in joints)
         # Judged: what the table tells. Of these the first change relative to what they are, the others as they are.
         self.relative = [name for name in self.now if name.startswith(("objective", "effort"))]
-        shares = [name for name in self.now if name.startswith("share")]
-        self.told = [*self.relative, *shares, *(f"used {name}" for name in self.busiest)]
+        carried = [name for name in self.now if name.startswith("share")]
+        self.told = [*self.relative, *carried, *(f"used {name}" for name in self.busiest)]
 
     def study(self, parameters: Sequence[Parameter], say: Callable[[str], None]) -> Study:
         """Return what the plan depends on."""

@@ -10,8 +10,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from liftopt.assessment.joints import NEAR_LIMIT
+
 WIDTH = 80
-NEAR_LIMIT = 0.8  # share of a torque limit from which it is marked
 BLOCKS = "▁▂▃▄▅▆▇█"
 ASCII_BLOCKS = "_.-~=+*#"
 

@@ -52,6 +52,11 @@ class AgentTrajectory:
     limits: JointLimits
     grasp: Grasp
 
+    @property
+    def moving_joints(self) -> tuple[str, ...]:
+        """Names of the joints that are not pinned, in the model's order."""
+        return tuple(name for name, moves in zip(self.joint_names, self.moving, strict=True) if moves)
+
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
         constant = ("name", "joint_names", "moving", "limits", "grasp")

@@ -14,7 +14,7 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
-from liftopt.trajectory import AgentTrajectory, angle_between, attitude, turned
+from liftopt.trajectory import angle_between, attitude, turned
 
 Array = npt.NDArray[np.float64]
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
@@ -86,7 +86,7 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         speed.append(np.abs(v) - bounds.velocity)
         torque.append(np.maximum(bounds.tau_lower - tau, tau - bounds.tau_upper))
         force.append(np.linalg.norm(agent.grasp_force, axis=1) - task.max_grasp_force)
-    joints = [name for agent in motion.agents for name in _moving_names(agent)]
+    joints = [name for agent in motion.agents for name in agent.moving_joints]
     position.append(np.maximum(task.pose_lower - held.pose, held.pose - task.pose_upper))
     speed.append(np.abs(held.pose_velocity) - task.pose_velocity)
     agents = [agent.name for agent in motion.agents]
@@ -148,10 +148,6 @@ def _objective(problem: Problem, motion: Motion, result: SolverResult) -> Check:
     ours = sum(weights[name] * value for name, value in terms.items())
     error = abs(ours - result.objective) / max(1.0, abs(ours))
     return Check("objective by Pinocchio", error, OBJECTIVE, "relative", "")
-
-
-def _moving_names(agent: AgentTrajectory) -> list[str]:
-    return [name for name, moves in zip(agent.joint_names, agent.moving, strict=True) if moves]
 
 
 def _worst(name: str, values: Array, limit: float, unit: str, labels: list[str], time: Array) -> Check:

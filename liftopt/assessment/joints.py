@@ -56,14 +56,9 @@ def joint_findings(fine: Solution, agent: AgentTrajectory, words: Words) -> Iter
     yield from _angles(fine, agent, words)
 
 
-def moving_names(agent: AgentTrajectory) -> list[str]:
-    """Return the names of the joints that move, as in solution.nc."""
-    return [name for name, moves in zip(agent.joint_names, agent.moving, strict=True) if moves]
-
-
 def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
     share, tau = limit_share(agent), agent.tau[:, agent.moving]
-    names, peaks = moving_names(agent), share.max(axis=0)
+    names, peaks = agent.moving_joints, share.max(axis=0)
     for row in map(int, np.argsort(-peaks)):
         k, name = int(np.argmax(share[:, row])), names[row]
         peak = float(share[k, row])
@@ -90,7 +85,7 @@ def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[F
 def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
     share = np.abs(agent.v[:, agent.moving]) / agent.limits.velocity
     largest = int(np.argmax(share.max(axis=0)))
-    for row, name in enumerate(moving_names(agent)):
+    for row, name in enumerate(agent.moving_joints):
         k = int(np.argmax(share[:, row]))
         peak, limit = float(share[k, row]), float(np.degrees(agent.limits.velocity[row]))
         if peak < 1 - AT_LIMIT and row != largest:
@@ -111,7 +106,7 @@ def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
 
 def _angles(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
     q, low, high = np.degrees(agent.q[:, agent.moving]), *np.degrees((agent.limits.q_lower, agent.limits.q_upper))
-    for row, name in enumerate(moving_names(agent)):
+    for row, name in enumerate(agent.moving_joints):
         margin = AT_LIMIT * (high[row] - low[row])
         for sign, limit, beyond in ((-1, low[row], low[row] - q[:, row]), (1, high[row], q[:, row] - high[row])):
             k, at = int(np.argmax(beyond)), beyond >= -margin

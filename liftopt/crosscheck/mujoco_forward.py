@@ -185,8 +185,7 @@ class Simulation:
     @cached_property
     def _hinges(self) -> tuple[str, ...]:
         """Names of the solution's moving joints."""
-        agents = self.solution.agents
-        return tuple(n for a in agents for n, moves in zip(a.joint_names, a.moving, strict=True) if moves)
+        return tuple(name for agent in self.solution.agents for name in agent.moving_joints)
 
     def _at_hinges(self, k: int, force: Array) -> Array:
         """Return the torques (n,) of the moving joints that generalised forces stand for at time ``k``."""

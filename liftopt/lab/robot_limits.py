@@ -13,14 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.interpolation import refined
+from liftopt.interpolation import between_knots
 from liftopt.lab.action_server import PATH_TOLERANCE, Mode, server_curve
 from liftopt.lab.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory, robot_motion
 from liftopt.multibody.sawyer import JOINT_SIGNS, sawyer_limits
 from liftopt.solution import Solution
 
 Array = npt.NDArray[np.float64]
-FINER = 10  # points an interval of the solution, as its own verification takes
 ROUNDING = 1e-6  # [rad, rad/s, Nm]: as far as the solver may leave a limit
 # The server refuses a first point farther from the arm than its path tolerance, a negative one without the sign: in
 # velocity mode it is -1 [rad]. In both position modes it gives up at once where the arm is as far off as allowed.
@@ -40,12 +39,12 @@ FIX = "solve again with a longer duration or more solver.intervals"
 
 
 def check_limits(solution: Solution) -> None:
-    """Check position, velocity and torque of the robot on ``FINER`` points an interval against its own limits.
+    """Check position, velocity and torque of the robot between the knots too, against its own limits.
 
     Raises:
         InputError: a limit is passed; it names the joint, the time and by how much.
     """
-    dense = refined(solution, FINER)
+    dense = between_knots(solution)
     time, robot = dense.time, dense.agents[1]
     q, v, tau = (JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.tau))
     for found in (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.ergonomics.posture import posture_of
 from liftopt.ergonomics.rula import rula
 from liftopt.ergonomics.strength import strength_use
@@ -12,7 +13,6 @@ from liftopt.viz.anatomy import ANATOMY
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
 
-NEAR_LIMIT = 80  # percent of strength
 ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
 
 
@@ -32,9 +32,9 @@ def strength_used(lift: Lift) -> Figure:
     for row, use in enumerate(uses):
         axes.text(101.5, row + 0.5, f"{100 * use.peak:.0f} %", va="center", fontsize=8, color=INK)
         axes.axhline(row, color="white", linewidth=1.2)
-        if 100 * use.peak >= NEAR_LIMIT:
+        if use.peak >= NEAR_LIMIT:
             axes.contour(
-                (edges[1:] + edges[:-1]) / 2, [row, row + 1], share[[row, row]], [NEAR_LIMIT], colors=VERMILION
+                (edges[1:] + edges[:-1]) / 2, [row, row + 1], share[[row, row]], [100 * NEAR_LIMIT], colors=VERMILION
             )
     axes.text(103.5, -0.25, "peak", va="bottom", fontsize=7.5, color=INK)
     figure.colorbar(image, cax=axes.inset_axes((1.16, 0.0, 0.03, 1.0)), label="strength used [%]")

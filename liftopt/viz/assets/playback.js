@@ -166,13 +166,12 @@
   window.addEventListener("keydown", (event) => {
     if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
     const step = event.shiftKey ? 0.1 : 0.02;
-    const names = presets;
     if (event.key === " ") play(!state.playing);
     else if (event.key === "ArrowLeft") { play(false); seek(state.time - step); }
     else if (event.key === "ArrowRight") { play(false); seek(state.time + step); }
     else if (event.key === "Home") seek(0);
     else if (event.key === "End") { play(false); seek(data.duration); }
-    else if (Number(event.key) >= 1 && Number(event.key) <= names.length) look(names[Number(event.key) - 1]);
+    else if (Number(event.key) >= 1 && Number(event.key) <= presets.length) look(presets[Number(event.key) - 1]);
     else return;
     event.preventDefault();
   });
