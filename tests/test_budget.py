@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 from typing import Any
@@ -39,12 +40,13 @@ def _assert_same(one: Solution, other: Solution) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_machine_that_is_a_hundred_times_slower_finds_the_same(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_machine_that_is_hundreds_of_times_slower_finds_the_same(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its clock goes on by a second whenever it is looked at, so that this machine's speed does not count."""
     scenario = load_scenario("table5", CASES[case])
     idle = lift(scenario)
     assert idle.solved == (case == "solved")
-    clock = time.monotonic
-    monkeypatch.setattr(time, "monotonic", lambda: 100.0 * clock())
+    clock = itertools.count()
+    monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
     _assert_same(idle, lift(scenario))
 
 
