@@ -11,7 +11,6 @@ from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
 from liftopt.ergonomics.rula import ACTION
 from liftopt.multibody.provenance import subject_quantities
 from liftopt.multibody.range_of_motion import RANGES, VELOCITY_SOURCE
-from liftopt.multibody.sources import Source
 from liftopt.multibody.strength import STRENGTHS
 from liftopt.scene import subject_of
 from liftopt.solution import Solution
@@ -34,15 +33,10 @@ def person_findings(fine: Solution) -> Iterator[Finding]:
 
 def _words() -> Words:
     motions = {(item.joint, item.sign): item.motion for item in STRENGTHS}
-    strength = {(item.joint, item.sign): told(item.source) for item in STRENGTHS}
-    ranges = {(item.joint, -1): told(item.lower_source) for item in RANGES}
-    ranges |= {(item.joint, 1): told(item.upper_source) for item in RANGES}
-    return Words(PERSON, "strength", "strength", told(VELOCITY_SOURCE), motions, strength, ranges)
-
-
-def told(source: Source) -> str:
-    """Return a source in one line, with how far it was checked."""
-    return f"{source.citation} ({source.confidence})"
+    strength = {(item.joint, item.sign): item.source.told for item in STRENGTHS}
+    ranges = {(item.joint, -1): item.lower_source.told for item in RANGES}
+    ranges |= {(item.joint, 1): item.upper_source.told for item in RANGES}
+    return Words(PERSON, "strength", "strength", VELOCITY_SOURCE.told, motions, strength, ranges)
 
 
 def _posture(fine: Solution, ergonomics: Ergonomics, measure: Measure) -> Finding:
@@ -59,7 +53,7 @@ def _posture(fine: Solution, ergonomics: Ergonomics, measure: Measure) -> Findin
         WARNING if worst >= CHANGE else CAUTION if worst >= INVESTIGATE else INFO,
         f"posture RULA {worst} of 7, {ACTION[worst]}",
         f"{text}.",
-        fine.agents[0].name, None, measure.time, measure.value, None, measure.unit, told(measure.source),
+        fine.agents[0].name, None, measure.time, measure.value, None, measure.unit, measure.source.told,
     )  # fmt: skip
 
 
@@ -77,7 +71,7 @@ def _guide(fine: Solution, measure: Measure) -> Finding:
         severity,
         title,
         f"{name} ({measure.scope}): {measure.result}. {measure.reading}",
-        fine.agents[0].name, None, measure.time, measure.value, measure.limit, measure.unit, told(measure.source),
+        fine.agents[0].name, None, measure.time, measure.value, measure.limit, measure.unit, measure.source.told,
     )  # fmt: skip
 
 
@@ -93,5 +87,5 @@ def _data(fine: Solution) -> Finding:
         "person; every share of strength inherits that.",
         fine.agents[0].name,
         value=float(len(weak)),
-        source="; ".join(dict.fromkeys(told(item.source) for item in weak)),
+        source="; ".join(dict.fromkeys(item.source.told for item in weak)),
     )

@@ -9,7 +9,6 @@ import numpy as np
 from liftopt.assessment.finding import CAUTION, INFO, ROBOT, WARNING, Finding
 from liftopt.assessment.grasp import cap_findings
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
-from liftopt.assessment.person import told
 from liftopt.multibody import sawyer_description
 from liftopt.multibody.sources import Source
 from liftopt.solution import Solution
@@ -25,7 +24,7 @@ def robot_findings(fine: Solution) -> Iterator[Finding]:
     """Give what is to be said of the robot in a solution between its knots too."""
     robot, (payload, payload_source, source) = fine.agents[1], DATA[fine.scenario.robot.model]
     yield _payload(fine, payload, payload_source)
-    yield from joint_findings(fine, robot, Words(ROBOT, "torque", "torque limit", told(source), {}, {}, {}))
+    yield from joint_findings(fine, robot, Words(ROBOT, "torque", "torque limit", source.told, {}, {}, {}))
     yield from cap_findings(fine, robot, ROBOT)
 
 
@@ -45,5 +44,5 @@ def _payload(fine: Solution, payload: float, source: Source) -> Finding:
         WARNING if used > 1.0 else CAUTION if used >= NEAR_LIMIT else INFO,
         f"{100 * used:.0f} % of its payload of {payload:g} kg",
         f"{text}.",
-        robot.name, None, float(fine.time[k]), float(carried[k]), payload, "kg", told(source),
+        robot.name, None, float(fine.time[k]), float(carried[k]), payload, "kg", source.told,
     )  # fmt: skip

@@ -22,6 +22,11 @@ class Source:
     citation: str
     confidence: Confidence
 
+    @property
+    def told(self) -> str:
+        """The citation in one line, with how far it was checked."""
+        return f"{self.citation} ({self.confidence})"
+
 
 DE_LEVA_1996 = Source(
     "de Leva (1996), J Biomech 29:1223-1230, Table 4 (adjusted Zatsiorsky-Seluyanov parameters), as transcribed in "
