@@ -70,8 +70,8 @@ def scout(search: Search, found: Repertoire, tries: int, most: int | None = None
         results = [plan.result for plan in optima]
         # A wider search, of more tries than the scenario's, is for lifts that nothing was found for: any will do.
         share = min(tries, scenario.solver.tries)
-        idle, most = min(IDLE * _unseen(tried), MOST_IDLE) * share, MOST_VARIED * share
-        tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until, most)
+        idle, varied = min(IDLE * _unseen(tried), MOST_IDLE) * share, MOST_VARIED * share
+        tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until, varied)
         optima = _distinct(search, problem, spline, tried)
     near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
     chosen = near[: scenario.solver.starts]

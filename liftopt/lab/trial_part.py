@@ -99,14 +99,14 @@ def without_ignored(mapping: MarkerMap, part: TrialPart) -> MarkerMap:
 def _without(recording: Recording, ignored: tuple[Ignored, ...]) -> Recording:
     points = recording.points.copy()
     for one in ignored:
-        if one.marker not in recording.labels and not any(
-            label.rpartition(":")[2] == one.marker for label in recording.labels
-        ):
-            raise InputError("--ignore", one.marker, f"no such marker; the file has {', '.join(recording.labels)}")
+        try:
+            channel = recording.index(one.marker)
+        except InputError as error:
+            raise InputError("--ignore", one.marker, error.allowed) from None
         inside = (recording.time >= one.start - 1e-9) & (recording.time <= one.end + 1e-9)
         if not inside.any():
             raise InputError("--ignore", f"{one.marker}:{one.start:g}-{one.end:g}", _extent(recording))
-        points[inside, recording.index(one.marker)] = np.nan
+        points[inside, channel] = np.nan
     return replace(recording, points=points)
 
 
