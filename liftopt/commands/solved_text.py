@@ -6,12 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from liftopt.assessment.text import details_text, verdict_text
 from liftopt.solution import Solution
 from liftopt.summary import summary_dict
-from liftopt.summary_text import print_details
 
 
 def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: bool) -> str:
@@ -32,6 +29,10 @@ def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: boo
 
 
 def _tables(summary: dict[str, Any]) -> str:
+    from rich.console import Console  # which every other solve does without
+
+    from liftopt.summary_text import print_details
+
     console = Console()
     with console.capture() as capture:
         print_details(summary, console)
