@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -15,6 +16,12 @@ from liftopt.assessment.finding import Assessment, Finding
 from liftopt.multibody.agent import Grasp
 from liftopt.scenario import load_scenario
 from liftopt.solution import Solution
+
+
+def pytest_configure() -> None:
+    """Let Ctrl-C reach the commands that tests run, where the tests themselves run in the background of a shell."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class Solved(NamedTuple):
