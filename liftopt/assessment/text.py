@@ -91,7 +91,8 @@ def _fitted(parts: list[Part], room: int) -> list[str]:
         del kept[last]
         left += 1
     lines = [line for part in kept for line in part.lines]
-    return [*lines, f"  ... and {left} more findings with --details and in the report"] if left else lines
+    word = "finding" if left == 1 else "findings"
+    return [*lines, f"... and {left} more {word} with --details and in the report"] if left else lines
 
 
 def _lines(parts: list[Part]) -> int:
