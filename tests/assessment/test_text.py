@@ -29,6 +29,11 @@ def test_it_opens_with_the_verdict_and_says_who_lifts_what_where(solution: Simpl
     assert "Written to results/table5: solution.nc, scenario.toml, models/*.urdf" in lines
 
 
+def test_the_command_it_names_can_be_pasted(solution: SimpleNamespace) -> None:
+    folder = "results/first try"
+    assert f"liftopt report '{folder}' --html FILE" in verdict_text(solution, Path(folder))
+
+
 def test_another_scenario_is_described_by_its_own_numbers(solution: SimpleNamespace) -> None:
     human = dataclasses.replace(solution.scenario.human, sex="female", stature=1.6, mass=55.0)
     solution.scenario = dataclasses.replace(solution.scenario, human=human, name="nurse")
