@@ -6,11 +6,12 @@ import argparse
 import csv
 import io
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from liftopt.errors import LiftoptError
+from liftopt.errors import InputError, LiftoptError
 from liftopt.scenario import load_scenario, scenario_to_dict
 from liftopt.viz import FORMATS
 from liftopt.whole_file import write_whole
@@ -48,6 +49,9 @@ def pareto(args: argparse.Namespace, say: Callable[[str], None] | None = None) -
         LiftoptError: there is no verified solution at all.
     """
     scenario, out = load_scenario(args.scenario, args.overrides), Path(args.out)
+    there = next(folder for folder in (out, *out.absolute().parents) if os.path.exists(folder))
+    if not there.is_dir():  # said before many solves, not after them
+        raise InputError("--out", args.out, f"cannot be written: {there} is no folder")
     from liftopt.pareto import pareto_front
 
     front = pareto_front(scenario, args.points, say)

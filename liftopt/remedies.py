@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.guess import Start, posture_starts
+from liftopt.collocation.postures import PostureSolver
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.screen import too_fast
 from liftopt.collocation.solvers.result import Multipliers, Solver, SolverResult
@@ -35,6 +36,7 @@ ENOUGH = 4  # remedies
 # Work for all remedies, and what a search for postures counts as: in iterations of the solver on so many intervals, by
 # the time they take.
 WORK, POSTURES, INTERVALS = 4000.0, 70.0, 20
+HOLDS = 4.0  # likewise, whether the object can be held at both ends of a motion that is known
 # Of seeds, for postures. With three rounds of them and as much work in all, two of eight remedies were not found.
 ROUNDS = 1
 LEAST_MOVE = 0.05  # [m], tried first where nothing says how far to move
@@ -81,7 +83,7 @@ def levers(scenario: Scenario) -> list[Lever]:
         Lever(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
               frozenset({"grasp_force"}), 512, relative=True),
         Lever(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
-              "robot base {change:.2f} m farther away", _MOTION),
+              "robot base {change:.2f} m farther away", _MOTION, 256),
     ]  # fmt: skip
     for keys, where in _ends(scenario, "height"):
         lower, higher = where + " at most {value:.2f} m", where + " at least {value:.2f} m"
@@ -148,13 +150,13 @@ class Remedies:
         """
         signs = [sign for sign, words in ((-1, lever.less), (1, lever.more)) if words]
         plan, steps, fails, sign = None, min(hint, lever.most), 0, 0
-        while plan is None and steps <= lever.most and self._goes_on(rest):
+        while plan is None and fails < lever.most and self._goes_on(rest):
             for sign in signs:
                 plan = self._plan(lever, sign * steps, None)
                 if plan:
                     break
             else:
-                fails, steps = steps, int(GROWTH * steps) + 1
+                fails, steps = steps, min(int(GROWTH * steps) + 1, lever.most)
         if plan is None:
             return None
         helps = steps
@@ -213,9 +215,10 @@ class Remedies:
             plan = Plan(scenario, problem, spline, start.name, result)
             return plan if plan.result.converged and (plan.solved or plan.refinable) else None
 
-        if near and near.problem.same_structure(problem):
-            return solved(Start("near", near.result.x), near)
         postures = workshop.postures(problem, scenario)
+        if near and near.problem.same_structure(problem):
+            held = self._held(postures, problem, near)
+            return solved(Start("near", near.result.x), near) if held else None
         deadline, seed = self.search.deadline, scenario.solver.seed
         starts = posture_starts(problem, STARTS, seed, deadline, postures=postures, rounds=ROUNDS)
         self.left -= POSTURES
@@ -223,6 +226,16 @@ class Remedies:
             lower, upper = problem.bounds()
             starts += [Start("near", np.clip(x, lower, upper)) for x in self.near if x.shape == lower.shape]
         return next(filter(None, map(solved, starts)), None)
+
+    def _held(self, postures: PostureSolver, problem: Problem, near: Plan) -> bool:
+        """Whether the object can be held still at both ends, much as the motion of a plan does.
+
+        A motion need not: it may begin to fall. But a solve of the changed scenario asks for it first.
+        """
+        self.left -= HOLDS
+        control, task = near.problem.unpack(near.result.x)[0], problem.task
+        ends = ((task.start, control[0]), (task.end, control[-1]))
+        return all(postures.solve(pose, seed, self.search.deadline) is not None for pose, seed in ends)
 
 
 def _hint(scenario: Scenario, lever: Lever, obstacles: Sequence[Obstacle]) -> int:

@@ -128,6 +128,19 @@ def test_wrong_use_is_refused(words: list[str], said: str, tmp_path: Path, capsy
     assert not (tmp_path / "new").exists()
 
 
+def test_a_file_where_the_folder_should_be_is_told_before_any_solve(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def solved(*_: object) -> None:
+        raise AssertionError("solved")
+
+    monkeypatch.setattr("liftopt.pareto.pareto_front", solved)
+    (tmp_path / "taken").touch()
+    for out in (tmp_path / "taken", tmp_path / "taken" / "new"):
+        assert main(["pareto", "--out", str(out)]) == 2
+        assert f"{tmp_path / 'taken'} is no folder" in capsys.readouterr().err
+
+
 def test_terminal_and_figure_tell_the_same_ratios(front: Front) -> None:
     """The ratio with 1 for the smaller weight, by hand; the figure's labels start with what the table's rows do."""
     for weights, text in (((0.0198, 1.98), "1 : 100"), ((1.0, 1.0), "1 : 1"), ((3.98, 0.1), "39.8 : 1")):

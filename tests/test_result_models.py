@@ -90,10 +90,16 @@ def test_another_robot_is_refused_by_every_command(
 @pytest.mark.parametrize(
     ("model", "pattern", "replacement", "told"),
     [
-        ("sawyer", '"robot_Q4"', '"robot_elbow"', "its joint 7 is robot_elbow, not robot_Q4"),
+        ("sawyer", '"robot_Q4"', '"robot_elbow"', "its joint 7 is robot_elbow, not robot_Q4; copy"),
         ("sawyer", '"robot_grasp"', '"tip"', "it has no frame robot_grasp"),
         ("human_arm", '0.27029[0-9]+" rpy="-1.57', '0.37029" rpy="-1.57', r"its joint human_Q9 is 0\.100 m and 0 deg"),
         ("human_arm", 'mass value="1.2[0-9]+"', 'mass value="1.9"', r"at human_Q8 has 1\.90 kg, not 1\.2\d kg"),
+        (
+            "sawyer",
+            'xyz="0.0200067[0-9]+ ',
+            'xyz="0.220006787829 ',
+            r"at robot_Q1 has its centre of mass 0\.200 m from where it should be",
+        ),
         ("table", 'mass value="[0-9.]+"', 'mass value="7.0"', r"has 7\.00 kg, not 2\.00 kg"),
         ("table", '"-0.225 0.0', '"-0.325 0.0', r"its frame grasp_human is 0\.100 m and 0 deg from where it should be"),
     ],

@@ -22,8 +22,9 @@ class Finding:
     Attributes:
         code: what kind it is, ``"person.posture"``: what it is about, then what was found. ``"verdict.person"``,
             ``"verdict.robot"`` and ``"verdict.mathematics"`` are in every assessment.
-        severity: ``"error"`` (the numbers are no prediction), ``"warning"`` (a limit or a guide's value is reached or
-            exceeded: change something), ``"caution"`` (near a limit, or it shapes the result) or ``"info"``.
+        severity: ``"error"`` (the numbers are no prediction), ``"warning"`` (a limit or a guide's value is
+            exceeded, or no strength or torque is left: change something), ``"caution"`` (near a limit, or at one that
+            shapes the result) or ``"info"``.
         title: in a few words.
         message: in one or two sentences that stand alone.
         agent: name of who it is about; None for the lift as a whole.
@@ -123,6 +124,12 @@ class Assessment(Sequence[Finding]):
 
 
 FIELDS = tuple(field.name for field in fields(Finding))
+
+
+def percent(share: float) -> str:
+    """Return a share of a limit in percent; what misses or exceeds it by little is not told as 100."""
+    text = f"{100 * share:.0f}"
+    return text if text != "100" else f"{100 * share:.1f}".removesuffix(".0")
 
 
 def graver(one: str, other: str) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.assessment.finding import CAUTION, INFO, WARNING, Finding
+from liftopt.assessment.finding import CAUTION, INFO, WARNING, Finding, percent
 from liftopt.solution import Solution
 from liftopt.summary import joint_meaning, limit_share
 from liftopt.trajectory import AgentTrajectory
@@ -74,8 +74,8 @@ def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[F
         yield Finding(
             f"{words.subject}.{words.torque}",
             severity,
-            f"{joint} at {100 * peak:.0f} % of its {words.limit}",
-            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {100 * peak:.0f} % of "
+            f"{joint} at {percent(peak)} % of its {words.limit}",
+            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {percent(peak)} % of "
             f"its {words.limit} of {limit:.3g} Nm{beyond}{long}.",
             agent.name, name, float(fine.time[k]), abs(float(tau[k, row])), float(limit), "Nm",
             words.torque_sources.get((_short(agent, name), sign), words.source),
@@ -96,8 +96,8 @@ def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
         yield Finding(
             f"{words.subject}.speed",
             severity,
-            f"{joint} at {100 * peak:.0f} % of its speed limit",
-            f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {100 * peak:.0f} "
+            f"{joint} at {percent(peak)} % of its speed limit",
+            f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {percent(peak)} "
             f"% of its speed limit{_along(part)}.",
             agent.name, name, float(fine.time[k]), peak * float(agent.limits.velocity[row]),
             float(agent.limits.velocity[row]), "rad/s", words.source,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from liftopt.assessment.finding import CAUTION, INFO, PERSON, WARNING, Finding
+from liftopt.assessment.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
 from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
@@ -65,7 +65,7 @@ def _guide(fine: Solution, measure: Measure) -> Finding:
     elif measure.value is not None and measure.limit is not None:
         used = max(0.0, measure.value / measure.limit)  # a hand that only pulls down lifts nothing
         severity = WARNING if used > 1.0 else CAUTION if used >= NEAR_LIMIT else INFO
-        title = f"{100 * used:.0f} % of the {name} ({measure.value:.1f} of {measure.limit:.1f} kg)"
+        title = f"{percent(used)} % of the {name} ({measure.value:.1f} of {measure.limit:.1f} kg)"
     return Finding(
         f"{PERSON}.{measure.code}",
         severity,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from liftopt.assessment.finding import CAUTION, INFO, ROBOT, WARNING, Finding
+from liftopt.assessment.finding import CAUTION, INFO, ROBOT, WARNING, Finding, percent
 from liftopt.assessment.grasp import cap_findings
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
 from liftopt.multibody import sawyer_description
@@ -37,12 +37,12 @@ def _payload(fine: Solution, payload: float, source: Source) -> Finding:
     used = float(carried[k]) / payload
     text = (
         f"The robot bears {carried[k]:.2f} kg at {fine.time[k]:.2f} s ({tool:g} kg of it the gripper; vertical grasp "
-        f"force / g), {100 * used:.0f} % of its payload of {payload:g} kg"
+        f"force / g), {percent(used)} % of its payload of {payload:g} kg"
     )
     return Finding(
         f"{ROBOT}.payload",
         WARNING if used > 1.0 else CAUTION if used >= NEAR_LIMIT else INFO,
-        f"{100 * used:.0f} % of its payload of {payload:g} kg",
+        f"{percent(used)} % of its payload of {payload:g} kg",
         f"{text}.",
         robot.name, None, float(fine.time[k]), float(carried[k]), payload, "kg", source.told,
     )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from shlex import quote
 from textwrap import wrap
 from typing import NamedTuple
 
@@ -91,7 +92,8 @@ def _fitted(parts: list[Part], room: int) -> list[str]:
         del kept[last]
         left += 1
     lines = [line for part in kept for line in part.lines]
-    return [*lines, f"  ... and {left} more findings with --details and in the report"] if left else lines
+    word = "finding" if left == 1 else "findings"
+    return [*lines, f"... and {left} more {word} with --details and in the report"] if left else lines
 
 
 def _lines(parts: list[Part]) -> int:
@@ -133,7 +135,7 @@ def _where(folder: Path | None) -> Iterable[str]:
         return
     # Paths are not broken up, so that they can be copied.
     yield f"Written to {folder}: solution.nc, scenario.toml, models/*.urdf"
-    yield f"More: solve with --details, or liftopt report {folder} --html FILE"
+    yield f"More: solve with --details, or liftopt report {quote(str(folder))} --html FILE"
 
 
 def _wrapped(text: str, first: str = "", then: str = "") -> list[str]:

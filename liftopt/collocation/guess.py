@@ -170,8 +170,13 @@ def blend(problem: Problem, first: Posture, last: Posture) -> Array:
 
 
 def recombined(problem: Problem, starts: Sequence[Start], results: Sequence[SolverResult]) -> Start | None:
-    """Return the start in which every agent moves as it did best; None if it did so in one of the starts."""
+    """Return the start in which every agent moves as it did best.
+
+    None if it did so in one of the starts, or if the moves are not known.
+    """
     solved = [(result.objective, n) for n, result in enumerate(results) if result.converged and starts[n].moves]
+    if not starts[0].moves:  # it joins no known moves
+        return None
     own = []
     for agent in range(len(starts[0].moves)):
         tried = [(objective, starts[n], results[n].x) for objective, n in solved if starts[n].agent in (None, agent)]

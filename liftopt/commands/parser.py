@@ -104,7 +104,7 @@ class Parser(argparse.ArgumentParser):
             key, equals, value = given[0].partition("=")
             if value.strip() or (not equals and (apart[0] in shipped_scenarios() or Path(apart[0]).exists())):
                 continue
-            value = "".join(apart[:2] if apart[0] == "=" else apart[:1]).lstrip("=")
+            value = "".join(apart[:2] if apart[0] == "=" else apart[:1]).lstrip("=").rstrip(",")
             if not value:
                 continue
             told = " ".join((given[0], *(apart[:2] if apart[0] == "=" else apart[:1])))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from liftopt.lab.length_units import METRES
 from liftopt.lab.recording import TO_Z_UP, Recording
 from liftopt.lab.text_file import read_text
 from liftopt.scenario_schema import Choice, Kind, Number, entries, section
+from liftopt.suggestions import did_you_mean, nearest
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -153,7 +155,11 @@ def load_marker_map(source: str | Path) -> MarkerMap:
     Raises:
         InputError: the file cannot be read, is not TOML, or is no mapping; the message names the key.
     """
-    path = SHIPPED / f"{source}.toml" if source in shipped_maps() else Path(source)
+    shipped = shipped_maps()
+    path = SHIPPED / f"{source}.toml" if source in shipped else Path(source)
+    if not os.path.exists(path):  # not even where no path can be like this
+        meant = did_you_mean(nearest(str(source), shipped))
+        raise InputError(str(source), NO_VALUE, f"no such file, nor a shipped mapping ({', '.join(shipped)}){meant}")
     try:
         data = tomllib.loads(read_text(path, "a mapping in TOML").decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:  # UnicodeDecodeError is a ValueError too

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 # As far as models of one person or robot may differ, which two versions of a description make.
-PLACE = 0.01  # [m] of a joint or frame on the body that carries it
+PLACE = 0.01  # [m] of a joint, frame or centre of mass on the body that carries it
 TURN = 0.02  # [rad] likewise
 MASS = 0.05  # of a body, as a share of its own
 LIGHT = 0.05  # [kg] of a body, which may come on top
@@ -26,7 +26,7 @@ def difference(model: pin.Model, expected: pin.Model, frames: Sequence[str]) -> 
     for k, name in enumerate(wanted):
         if names[k : k + 1] != [name]:
             own = f"its joint {k + 1} is {names[k]}, not {name}" if k < len(names) else f"it has no joint {name}"
-            return f"{own} ({len(names)} joints, not {len(wanted)})"
+            return f"{own} ({len(names)} joints, not {len(wanted)})" if len(names) != len(wanted) else own
     if len(names) > len(wanted):
         return f"it has {len(names)} joints, not {len(wanted)}"
     for frame in frames:
@@ -47,6 +47,9 @@ def difference(model: pin.Model, expected: pin.Model, frames: Sequence[str]) -> 
         mass, other_mass = model.inertias[i].mass, expected.inertias[i].mass
         if abs(mass - other_mass) > MASS * other_mass + LIGHT:
             return f"its body at {name} has {mass:.2f} kg, not {other_mass:.2f} kg"
+        off = float(np.linalg.norm(model.inertias[i].lever - expected.inertias[i].lever))
+        if off > PLACE and other_mass > LIGHT:
+            return f"its body at {name} has its centre of mass {off:.3f} m from where it should be"
     return ""
 
 

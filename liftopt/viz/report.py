@@ -10,7 +10,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import liftopt
-from liftopt.assessment.finding import Finding
+from liftopt.assessment.finding import Finding, percent
 from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.rula import ASSUMPTIONS
@@ -106,7 +106,7 @@ def _number(finding: Finding) -> str:
     value = finding.value or 0.0
     if finding.unit in ("N", "of 7"):
         return f"{value:.0f} {finding.unit}"
-    return f"{100 * value / (finding.limit or 1.0):.0f} %"
+    return f"{percent(value / (finding.limit or 1.0))} %"
 
 
 def _environment() -> Environment:

@@ -10,7 +10,7 @@ import pytest
 
 from liftopt.assessment.failure_text import MOST_LINES as MOST_OF_FAILURE
 from liftopt.assessment.failure_text import failure_text
-from liftopt.assessment.finding import Assessment, Finding
+from liftopt.assessment.finding import Assessment, Finding, percent
 from liftopt.assessment.text import MOST_LINES, details_text, verdict_text
 from liftopt.reasons import Obstacle, Remedy
 
@@ -27,6 +27,11 @@ def test_it_opens_with_the_verdict_and_says_who_lifts_what_where(solution: Simpl
     ]
     assert "  ! The posture scores RULA 6 of 7." in lines
     assert "Written to results/table5: solution.nc, scenario.toml, models/*.urdf" in lines
+
+
+def test_the_command_it_names_can_be_pasted(solution: SimpleNamespace) -> None:
+    folder = "results/first try"
+    assert f"liftopt report '{folder}' --html FILE" in verdict_text(solution, Path(folder))
 
 
 def test_another_scenario_is_described_by_its_own_numbers(solution: SimpleNamespace) -> None:
@@ -57,6 +62,16 @@ def test_it_never_takes_more_lines_nor_columns_and_keeps_verdicts_and_the_graves
     if many == 60:
         assert not any("caution 0" in line for line in lines)
         assert any("more findings with --details" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("share", "told"),
+    [(0.0, "0"), (0.271, "27"), (0.994, "99"), (0.9960, "99.6"), (0.99999, "100"), (1.0004, "100"), (1.004, "100.4"),
+     (1.32, "132")],
+)  # fmt: skip
+def test_100_percent_is_what_is_at_its_limit(share: float, told: str) -> None:
+    """By hand: 99.6 % is a caution and 100 % a warning, so they are not told alike."""
+    assert percent(share) == told
 
 
 def test_details_hold_every_finding_in_full(solution: SimpleNamespace) -> None:

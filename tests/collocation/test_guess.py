@@ -207,6 +207,9 @@ def test_best_moves_of_all_agents_come_together(small_lift: Problem) -> None:
     assert recombined(small_lift, starts[:2], results[:2]) is None
     nowhere = [_result(starts[0], 10.0, False), results[1], _result(starts[2], 8.0, False), results[3]]
     assert recombined(small_lift, starts, nowhere) is None
+    # A start between the nearest postures joins no known moves.
+    unknown = [Start("nearest postures", naive_start(small_lift).x), naive_start(small_lift)]
+    assert recombined(small_lift, unknown, [_result(start, 10.0) for start in unknown]) is None
 
 
 def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) -> None:

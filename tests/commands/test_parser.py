@@ -32,6 +32,7 @@ SPACED = "must be KEY=VALUE without spaces; write --set human.stature=1.75"
         ("solve --set=human.stature 1.75", SPACED),
         ("solve --set human.stature = 1.75", SPACED),
         ("solve --set human.stature =1.75", SPACED),
+        ("solve --set human.stature = 1.75, human.mass = 70", SPACED),
         ("solve --set human.stature= 1.75", SPACED),
         ("pareto --set human.stature 1.75 --out x", SPACED),
         ("solve --set human.stature:1.75", "write --set human.stature=1.75"),

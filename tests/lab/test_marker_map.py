@@ -75,6 +75,8 @@ def test_files_that_are_no_mapping(tmp_path: Path) -> None:
         path.write_bytes(content)
         with pytest.raises(InputError, match=match):
             load_marker_map(path)
+    with pytest.raises(InputError, match=r"no such file, nor a shipped mapping \(box_lift\); did you mean box_lift"):
+        load_marker_map("box_lft")
     with pytest.raises(InputError, match="no such file"):
         load_marker_map("no_such_map")
 
