@@ -102,13 +102,18 @@ LIFTOPT_INLINE void multiply_vector(double* y, const double* a, int lda, int row
 template <class Lane>
 LIFTOPT_INLINE void multiply_transposed(double* y, const double* a, int lda, int rows, int columns, const double* x,
                                         double sign) {
+  // As many sums side by side with vectors of any width, so that all round alike.
+  constexpr int kSums = kLanes / kWidth<Lane>;
   const Lane* from = reinterpret_cast<const Lane*>(x);
   for (int j = 0; j < columns; ++j) {
     const Lane* column = reinterpret_cast<const Lane*>(a + static_cast<long>(lda) * j);
-    Lane sum{};
-    for (int r = 0; r < rows / kWidth<Lane>; ++r) sum += column[r] * from[r];
+    Lane sum[kSums] = {};
+    for (int r = 0; r < rows / kWidth<Lane>; r += kSums)
+#pragma GCC unroll 4
+      for (int s = 0; s < kSums; ++s) sum[s] += column[r + s] * from[r + s];
     double total = 0.0;
-    for (int r = 0; r < kWidth<Lane>; ++r) total += sum[r];
+    for (int s = 0; s < kSums; ++s)
+      for (int r = 0; r < kWidth<Lane>; ++r) total += sum[s][r];
     y[j] += sign * total;
   }
 }

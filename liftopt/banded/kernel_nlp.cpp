@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dense.hpp"
 #include "knot_assembly.hpp"
 
 namespace banded {
@@ -91,21 +92,21 @@ void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weig
   at_.clear();
 }
 
-double KernelNlp::add_squares(int group) const {
+void KernelNlp::add_squares(int group, double& f) const {
   const int width = lanes();
   const double *w = knots_.weights(group), *c = c_.data() + group * n_c_ * width;
   const double* y = y_.data() + group * n_y_ * width;
-  double sum = 0.0;
+  double sum[kLanes] = {};
   const auto add = [&](const Vector& weight, const double* values) {
     for (std::size_t j = 0; j < weight.size(); ++j)
       if (weight[j] != 0.0)
-        for (int l = 0; l < width; ++l) sum += w[l] * weight[j] * values[j * width + l] * values[j * width + l];
+        for (int l = 0; l < width; ++l) sum[l] += weight[j] * values[j * width + l] * values[j * width + l];
   };
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     add(parts_[p].c_weight, c + first_c_[p] * width);
     add(parts_[p].y_weight, y + first_y_[p] * width);
   }
-  return sum;
+  for (int l = 0; l < width; ++l) f += w[l] * sum[l];
 }
 
 // g += G c
@@ -147,7 +148,7 @@ double KernelNlp::evaluate(const double* x, double* g) {
       double* results[] = {c + first_c_[p] * lanes()};
       parts_[p].value(arguments, results, nullptr, nullptr, 0);
     }
-    f += add_squares(group);
+    add_squares(group, f);
     add_outputs(group, c, g);
   }
   linear_.multiply(x, g);

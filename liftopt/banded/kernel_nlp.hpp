@@ -74,7 +74,8 @@ class KernelNlp : public Nlp {
   int lanes() const { return knots_.lanes(); }
   void find_squares();
   void plan_products();
-  double add_squares(int group) const;
+  // f += weighted squares, knot by knot: the same sum whatever the number of lanes.
+  void add_squares(int group, double& f) const;
   void add_outputs(int group, const double* c, double* g) const;
   void pull_back(int group, const double* multipliers, double* pull) const;
   void differentiate(int group, double scale, double* slope_by_y);

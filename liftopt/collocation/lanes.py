@@ -24,7 +24,16 @@ from liftopt.collocation.libraries import cache_folder, find_library, keep
 
 SYMBOLS = ("wide_value", "wide_derivatives", "wide_lanes")
 # Scheduling takes most of the compiler's time and spills what it moves; -O1 evaluates half as fast.
-FLAGS = ("-O2", "-fno-schedule-insns", "-fno-schedule-insns2", "-fPIC", "-shared", "-fno-math-errno")
+# No fused multiplications: processors without them would round differently, and a search finds other optima then.
+FLAGS = (
+    "-O2",
+    "-ffp-contract=off",
+    "-fno-schedule-insns",
+    "-fno-schedule-insns2",
+    "-fPIC",
+    "-shared",
+    "-fno-math-errno",
+)
 # Extensions of x86-64 that the code gains from, as both the kernel and the compiler call them.
 EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl")
 # What generated code may call beside arithmetic; a function that is missing here would not compile. The conditions on
@@ -42,25 +51,26 @@ typedef double lane __attribute__((vector_size(8 * LANES), aligned(8 * LANES)));
 typedef long long casadi_int;
 #define LIFT(name, call) static inline lane name(lane x, lane y) \\
 { lane r; (void)y; for (int i = 0; i < LANES; ++i) r[i] = call; return r; }
-/* The C library of GNU has sine and cosine of vectors, with 4 units in the last place at most; libm.so brings it. */
-#if defined(__GLIBC__) && defined(__x86_64__)
-#if __GLIBC_PREREQ(2, 22) && LANES == 8
-#define OF_LANES(name) _ZGVeN8v_##name
-#elif __GLIBC_PREREQ(2, 22) && LANES == 4
-#define OF_LANES(name) _ZGVdN4v_##name
-#elif __GLIBC_PREREQ(2, 22)
-#define OF_LANES(name) _ZGVbN2v_##name
-#endif
-#endif
-#ifdef OF_LANES
-lane OF_LANES(sin)(lane);
-lane OF_LANES(cos)(lane);
-#define lane_sin(x, y) OF_LANES(sin)(x)
-#define lane_cos(x, y) OF_LANES(cos)(x)
-#else
-LIFT(lane_sin, sin(x[i]))
-LIFT(lane_cos, cos(x[i]))
-#endif
+/* Sine and cosine that round alike with vectors of any width, which no library's do: Cody and Waite's reduction by
+multiples of pi / 2 in three parts, then Taylor's polynomials as fdlibm fits them on -pi/4 to pi/4. Angles are small. */
+typedef long long places __attribute__((vector_size(8 * LANES), aligned(8 * LANES)));
+#define EITHER(mask, one, other) (lane)(((places)(one) & (mask)) | ((places)(other) & ~(mask)))
+static inline lane quarter_turns(lane x, places ahead) {
+  const double whole = 6755399441055744.0; /* 1.5 * 2^52: the sum ends at the units */
+  lane t = x * 0.63661977236758134308 + whole, k = t - whole;
+  places n = (places)t + ahead;
+  lane r = ((x - k * 1.57079632673412561417) - k * 6.07710050630396597660e-11) - k * 2.02226624879595063154e-21;
+  lane z = r * r;
+  lane s = r + r * z * (-1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04
+    + z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+  lane c = 1.0 - 0.5 * z + z * z * (4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z * (
+    2.48015872894767294178e-05 + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09
+    + z * -1.13596475577881948265e-11)))));
+  lane v = EITHER((n & 1) == 0, s, c);
+  return (lane)((places)v ^ ((n & 2) << 62));
+}
+#define lane_sin(x, y) quarter_turns(x, (places){0})
+#define lane_cos(x, y) quarter_turns(x, (places){0} + 1)
 LIFT(lane_sqrt, sqrt(x[i]))
 LIFT(lane_fabs, fabs(x[i]))
 LIFT(lane_fmax, fmax(x[i], y[i]))
