@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any, overload
 
 # The gravest first.
@@ -121,9 +121,6 @@ class Assessment(Sequence[Finding]):
     def plain(self) -> list[dict[str, Any]]:
         """Return the findings ready for JSON."""
         return [asdict(finding) for finding in self.findings]
-
-
-FIELDS = tuple(field.name for field in fields(Finding))
 
 
 def percent(share: float) -> str:
