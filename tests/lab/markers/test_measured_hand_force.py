@@ -36,8 +36,22 @@ def test_units_behind_the_names_are_read(tmp_path: Path, header: str, time: floa
 
 
 def test_counts_are_no_newtons(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"3e\+07 N.*at most 10000 N.*newtons"):
+    with pytest.raises(InputError, match=r"3e\+07 N.*at most 3000 N.*newtons"):
         _read(tmp_path, "time,fx,fy,fz", TIME, 1e6 * LIFT)
+
+
+def test_a_number_that_stands_for_no_value_is_no_force(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"9999 N.*at most 3000 N"):
+        _read(tmp_path, "time,fx,fy,fz", TIME, np.where(np.arange(200) == 90, -9999.0, LIFT))
+
+
+def test_a_hole_in_the_series_is_refused_where_the_force_changes(tmp_path: Path) -> None:
+    kept = (TIME < 0.3) | (TIME > 0.9)
+    with pytest.raises(InputError, match=r"no force from 0\.29 to 0\.91 s, while it changes by 16\.\d N"):
+        _read(tmp_path, "time,fx,fy,fz", TIME[kept], LIFT[kept]).at(TIME)
+    found, outside = _read(tmp_path, "time,fx,fy,fz", TIME[kept], np.full(kept.sum(), 20.0)).at(TIME)
+    np.testing.assert_allclose(found[:, 2], 20.0)
+    assert outside == 0
 
 
 def test_milliseconds_taken_for_seconds_are_refused(tmp_path: Path) -> None:
