@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +20,7 @@ COLUMNS = ("time", "fx", "fy", "fz")
 UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | {name: {"N": 1.0, "kN": 1000.0} for name in COLUMNS[1:]}
 NAMED = re.compile(r"([a-z]+)\s*(?:[\[(](.*)[\])])?", re.IGNORECASE)
 LARGEST = 3000.0  # N; nobody's hand bears more, while 9999 stands for "no value" in many files
+SMALLEST = 0.5  # N, of the largest: less bears no object
 LONGEST_STEP = 0.1  # s between samples, over which a hand's force changes much
 MUCH_LONGER = 3.0  # times the recording: with such steps, a series in another unit of time
 HOLE = 10.0  # times the usual step: samples are missing there
@@ -66,6 +68,21 @@ class HandForce:
         self._check_holes(step, time)
         force = np.stack([np.interp(time, self.time, column, left=0.0, right=0.0) for column in self.force.T], axis=1)
         return force, int(outside.sum())
+
+    def check_covers(self, lifts: Sequence[tuple[float, float]]) -> None:
+        """Check that the series holds one of the lifts from ... to [s] wholly, to 0.1 s, if there are any.
+
+        Raises:
+            InputError: it does not: the hand would carry nothing in the middle of a lift.
+        """
+        first, last = float(self.time[0]), float(self.time[-1])
+        if lifts and not any(first <= a + LONGEST_STEP and last >= b - LONGEST_STEP for a, b in lifts):
+            spans = ", ".join(f"{a:.2f} to {b:.2f} s" for a, b in lifts)
+            raise InputError(
+                self.source,
+                f"{first:g} to {last:g} s",
+                f"does not hold the lift, in which the object moves from {spans}; --hand-force-start sets its start",
+            )
 
     def _check_holes(self, step: float, time: Array) -> None:
         """Refuse what would be drawn as a straight line through a hole in a series sampled closely."""
@@ -155,5 +172,12 @@ def _checked(series: HandForce) -> HandForce:
     if (largest := float(np.abs(series.force).max())) > LARGEST:
         raise InputError(
             series.source, f"{largest:g} N", f"is no force of a hand (at most {LARGEST:g} N): are these newtons?"
+        )
+    if 0.0 < largest < SMALLEST:
+        raise InputError(
+            series.source,
+            f"{largest:g} N",
+            f"is the largest force, and a hand that bears an object has {SMALLEST:g} N at least; if these are "
+            "kilonewtons, name the columns fx [kN]",
         )
     return series
