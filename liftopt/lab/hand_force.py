@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.force_file import LARGEST, SECONDS, read_forces
+from liftopt.lab.force_file import SECONDS, read_forces
 from liftopt.lab.motion_table import read_motion_table
 from liftopt.lab.recording import TO_Z_UP, Array
 from liftopt.lab.sensor_table import SIGNATURE
@@ -18,8 +19,11 @@ from liftopt.lab.text_file import Line, read_lines
 COLUMNS = ("time", "fx", "fy", "fz")
 UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | {name: {"N": 1.0, "kN": 1000.0} for name in COLUMNS[1:]}
 NAMED = re.compile(r"([a-z]+)\s*(?:[\[(](.*)[\])])?", re.IGNORECASE)
+LARGEST = 3000.0  # N; nobody's hand bears more, while 9999 stands for "no value" in many files
+SMALLEST = 0.5  # N, of the largest: less bears no object
 LONGEST_STEP = 0.1  # s between samples, over which a hand's force changes much
 MUCH_LONGER = 3.0  # times the recording: with such steps, a series in another unit of time
+HOLE = 10.0  # times the usual step: samples are missing there
 CHANGE = 1.0  # N by which the whole series may change and be interpolated over any time
 
 
@@ -41,7 +45,8 @@ class HandForce:
         """Return the force (F, 3) at ``time`` (F,) [s], zero outside the series, and how many times are outside.
 
         Raises:
-            InputError: all times are outside, or the samples are too far apart to follow a lift.
+            InputError: all times are outside, the samples are too far apart to follow a lift, or some are missing
+                while the force changes.
         """
         outside = (time < self.time[0]) | (time > self.time[-1])
         spans = f"{self.time[0]:g} to {self.time[-1]:g} s, the recording from {time[0]:g} to {time[-1]:g} s"
@@ -60,8 +65,40 @@ class HandForce:
                 f"from sample to sample is too long to follow a lift (it goes from {spans}); at most "
                 f"{LONGEST_STEP:g} s. If the time is in milliseconds, name the column time [ms]",
             )
+        self._check_holes(step, time)
         force = np.stack([np.interp(time, self.time, column, left=0.0, right=0.0) for column in self.force.T], axis=1)
         return force, int(outside.sum())
+
+    def check_covers(self, lifts: Sequence[tuple[float, float]]) -> None:
+        """Check that the series holds one of the lifts from ... to [s] wholly, to 0.1 s, if there are any.
+
+        Raises:
+            InputError: it does not: the hand would carry nothing in the middle of a lift.
+        """
+        first, last = float(self.time[0]), float(self.time[-1])
+        if lifts and not any(first <= a + LONGEST_STEP and last >= b - LONGEST_STEP for a, b in lifts):
+            spans = ", ".join(f"{a:.2f} to {b:.2f} s" for a, b in lifts)
+            raise InputError(
+                self.source,
+                f"{first:g} to {last:g} s",
+                f"does not hold the lift, in which the object moves from {spans}; --hand-force-start sets its start",
+            )
+
+    def _check_holes(self, step: float, time: Array) -> None:
+        """Refuse what would be drawn as a straight line through a hole in a series sampled closely."""
+        if not 0.0 < step <= LONGEST_STEP:
+            return
+        change = np.abs(np.diff(self.force, axis=0)).max(axis=1)
+        hole = (np.diff(self.time) > max(LONGEST_STEP, HOLE * step)) & (change > CHANGE)
+        hole &= (self.time[1:] > time[0]) & (self.time[:-1] < time[-1])
+        if hole.any():
+            first = int(np.flatnonzero(hole)[0])
+            raise InputError(
+                self.source,
+                NO_VALUE,
+                f"has no force from {self.time[first]:g} to {self.time[first + 1]:g} s, while it changes by "
+                f"{change[first]:.3g} N; cut the trial with --from and --to",
+            )
 
 
 def read_hand_force(path: Path, up: str) -> HandForce:
@@ -135,5 +172,12 @@ def _checked(series: HandForce) -> HandForce:
     if (largest := float(np.abs(series.force).max())) > LARGEST:
         raise InputError(
             series.source, f"{largest:g} N", f"is no force of a hand (at most {LARGEST:g} N): are these newtons?"
+        )
+    if 0.0 < largest < SMALLEST:
+        raise InputError(
+            series.source,
+            f"{largest:g} N",
+            f"is the largest force, and a hand that bears an object has {SMALLEST:g} N at least; if these are "
+            "kilonewtons, name the columns fx [kN]",
         )
     return series

@@ -18,7 +18,6 @@ AT_REST = 0.005  # m; nearer than this to where it lay, the object has not been 
 AT_PLACE = 0.1  # s that it stays there at least, or it passes by
 LYING, LYING_FOR = 0.0015, 0.5  # m and s: hands never hold so still for so long, a support does
 MOVING = 0.05  # m/s; slower than this when it comes into sight, it lay there before
-LONGEST_UNSEEN = 0.2  # s for which the motion of what is carried is told from before and after
 GRAVITY = np.array([0.0, 0.0, -9.81])
 
 
@@ -44,7 +43,7 @@ class ObjectMotion:
 def object_motion(time: Array, points: Array, source: str) -> ObjectMotion:
     """Return the motion of a rigid object.
 
-    Where it is out of sight and lies, it lies on; where it moves, its motion goes on smoothly for up to 0.2 s.
+    Where it is out of sight and lies, it lies on.
 
     Args:
         time: (F,) [s].
@@ -52,7 +51,7 @@ def object_motion(time: Array, points: Array, source: str) -> ObjectMotion:
         source: of the recording, for messages.
 
     Raises:
-        InputError: it is out of sight (fewer than three markers) while it moves, for longer than that.
+        InputError: it is out of sight (fewer than three markers) while it moves.
     """
     shape = mean_shape(points)
     known = were_seen(shape)
@@ -126,8 +125,7 @@ def _turns(time: Array, position: Array, rotation: Array, unseen: npt.NDArray[np
         moving = any(_speed(time, position, side) > MOVING for side in ends)
         if len(ends) == 2 and not moving:
             moving = bool(np.linalg.norm(position[after[0]] - position[before[-1]]) > AT_REST)
-        long = len(ends) < 2 or time[last] - time[first] > LONGEST_UNSEEN
-        if moving and long:
+        if moving:
             raise InputError(
                 "segments.object",
                 NO_VALUE,
@@ -144,13 +142,10 @@ def _positions(time: Array, position: Array, unseen: npt.NDArray[np.bool_]) -> A
     seen, whole = np.flatnonzero(~unseen), position.copy()
     if not unseen.any():
         return position
-    smooth = make_interp_spline(time[seen], position[seen], k=min(3, len(seen) - 1))
     for first, last in runs(unseen):
         before, after = seen[seen < first], seen[seen > last]
         if not before.size or not after.size:
             whole[first : last + 1] = position[after[0] if after.size else before[-1]]
-        elif time[last] - time[first] <= LONGEST_UNSEEN:
-            whole[first : last + 1] = smooth(time[first : last + 1])
         else:
             share = (time[first : last + 1] - time[before[-1]]) / (time[after[0]] - time[before[-1]])
             way = position[after[0]] - position[before[-1]]

@@ -176,7 +176,8 @@ def wrong_points(points: Array, rate: float, change: float = LEAST_CHANGE) -> Fl
     Of the markers whose distances are off in a frame the one with most of them goes first.
     """
     work = points.copy()
-    wrong = _frozen(work, rate)
+    frozen = _frozen(work, rate)
+    wrong = frozen.copy()
     work[wrong] = np.nan
     suspect = aside_of(work, rate)
     for _ in range(2):  # the usual distances once more, without what was wrong
@@ -185,7 +186,8 @@ def wrong_points(points: Array, rate: float, change: float = LEAST_CHANGE) -> Fl
         wrong |= _edges(deviation, tolerance, wrong, rate)
         # A marker that is off before and after is not right by chance between.
         wrong |= binary_closing(wrong, np.ones((HOLE + 1, 1), bool))
-    wrong |= _whole_pieces(points, wrong, rate)
+    # A freeze shows its own start: before it the marker was right, though no jump lies between.
+    wrong |= _whole_pieces(points, wrong & ~frozen, rate)
     work[wrong] = np.nan
     # What jumps without a change of shape: two markers that are alike seen from the others.
     return np.asarray(wrong | aside_of(work, rate))

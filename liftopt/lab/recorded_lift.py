@@ -318,6 +318,7 @@ def _force(
 ) -> tuple[Array, str]:
     if load.measured is not None:
         force, outside = load.measured.at(time)
+        load.measured.check_covers([(float(time[i]), float(time[j])) for i, j in held.lifts] if held else [])
         turn = person.world.rotation @ TO_Z_UP[mapping.up]
         covers = f", which has none for {outside} of {len(time)} frames (0 N there)" if outside else ""
         return force @ turn.T, f"measured: {load.measured.source}{covers}"

@@ -66,12 +66,12 @@ def test_a_recording_becomes_a_recorded_lift(
 def test_a_measured_force(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     trc, mapping = files
     series = tmp_path / "force.csv"
-    series.write_text("time,fx,fy,fz\n0.5,0,0,20\n1.0,0,0,20\n")
+    series.write_text("time,fx,fy,fz\n0.4,0,0,20\n1.6,0,0,20\n")
     options = ["--map", str(mapping), "--out", str(tmp_path), "--mass", "65", "--hand-force", str(series)]
     assert main(["mocap", str(trc), *options]) == 0
-    assert "which has none for 149 of 200 frames (0 N there)" in capsys.readouterr().out
-    assert main(["mocap", str(trc), *options, "--hand-force-start", "1.75"]) == 0
-    assert "which has none for 175 of 200 frames" in capsys.readouterr().out
+    assert "which has none for 79 of 200 frames (0 N there)" in capsys.readouterr().out
+    assert main(["mocap", str(trc), *options, "--hand-force-start", "1.75"]) == 2
+    assert "1.75 to 2.95 s': does not hold the lift" in capsys.readouterr().err
 
 
 def test_part_of_a_trial(files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -113,6 +113,21 @@ def test_a_frozen_marker_is_dropped(truth: Any, clean: RecordedLift, label: str)
     assert any(note.startswith(f"{label} leaves") for note in lift.notes)
 
 
+def test_what_was_right_before_a_marker_froze_is_kept(truth: Any) -> None:
+    """It jumps back at the end, so that the stretch up to there is one piece."""
+    noise = np.random.default_rng(1).normal(0.0, 0.5, truth.recording.points.shape)
+    channel = truth.recording.index("MC2")
+
+    def freeze(points: Array) -> None:
+        points += noise
+        points[55:70, channel] = points[55, channel]
+
+    lift = _with(truth, freeze)
+    (note,) = [note for note in lift.notes if note.startswith("MC2 leaves")]
+    assert "in 14 frames" in note
+    assert "frames 56 to 69" in note
+
+
 @pytest.mark.parametrize(("group", "name"), [(("MC2", "MC5", "HAND1"), "hand"), (("B1", "B2", "B3", "B4"), "object")])
 def test_a_segment_that_is_frozen_while_it_moves_is_refused(truth: Any, group: tuple[str, ...], name: str) -> None:
     channels = [truth.recording.index(label) for label in group]

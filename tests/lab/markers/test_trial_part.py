@@ -70,7 +70,7 @@ def test_lifts_end_where_the_object_lies_anywhere() -> None:
     assert lifts(time, np.zeros((600, 3))) == ()
 
 
-@pytest.mark.parametrize("frames", [(0, 3), (0, 30), (185, 200), (95, 105)], ids=str)
+@pytest.mark.parametrize("frames", [(0, 3), (0, 30), (185, 200), (95, 105), (82, 102)], ids=str)
 def test_a_box_out_of_sight_for_a_moment(truth: Any, clean: RecordedLift, frames: tuple[int, int]) -> None:
     points = truth.recording.points.copy()
     for label in ("B1", "B2", "B3", "B4"):
