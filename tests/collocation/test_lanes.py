@@ -81,6 +81,38 @@ def test_every_lane_is_the_function_of_one_knot(
             np.testing.assert_allclose(got, reference, rtol=0, atol=1e-12 * (1.0 + np.abs(reference).max()))
 
 
+@pytest.mark.parametrize("extensions", [(), ("avx", "avx2", "fma")], ids=["baseline", "avx2"])
+def test_vectors_of_any_width_give_the_same_bits(
+    kernels: list[WideKernel],
+    knot_functions: Built,
+    rng: np.random.Generator,
+    cache: Path,
+    extensions: tuple[str, ...],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The kernel of this processor is the oracle, knot by knot."""
+    _, topology, functions = knot_functions["box"]
+    monkeypatch.setattr(lanes, "EXTENSIONS", extensions)
+    if len(lanes._extensions()) < len(extensions):
+        pytest.skip("this processor has no such vectors")
+    other = load_wide([(object_functions, topology)])
+    assert other is not None
+    y = rng.normal(size=(8, functions.value.size1_in(0)))
+    m = rng.normal(size=(8, functions.value.size1_out(0)))
+    p = np.tile(np.concatenate([[1.7], topology.parameters]), (8, 1))
+    sizes = [functions.jacobian.nnz_out(0), functions.curvature.nnz_out(0)]
+
+    def evaluated(kernel: WideKernel) -> list[bytes]:
+        parts = [
+            [*call(kernel.value, [y[k], p[k]], [m.shape[1]], kernel.lanes),
+             *call(kernel.derivatives, [y[k], p[k], m[k]], sizes, kernel.lanes)]
+            for k in np.split(np.arange(8), 8 // kernel.lanes)
+        ]  # fmt: skip
+        return [np.ascontiguousarray(np.vstack(part)).tobytes() for part in zip(*parts, strict=True)]
+
+    assert evaluated(other[0]) == evaluated(kernels[1])
+
+
 def test_they_are_compiled_once(kernels: list[WideKernel], knot_functions: Built, cache: Path) -> None:
     files = {f.name: f.stat().st_ino for f in cache.iterdir()}
     lines: list[str] = []
