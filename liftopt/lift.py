@@ -42,7 +42,7 @@ TRYING_SHARE, WORKING_SHARE = 0.7, 0.9
 SEEDS_A_TRY = 2
 # Times as many starts are tried before a lift that has postures at both ends counts as impossible, and iterations of
 # each: half of those that converge take fewer.
-WIDER, LEAN = 3, 60
+WIDER, LEAN = 2, 60
 SURE_STARTS = 2  # tried by IPOPT where the scenario's solver found nothing
 CUT = "the time limit of {limit:g} s {what} ({stage})"
 GIVEN_UP = {BEATEN: "given up: nothing better than another start in sight"}

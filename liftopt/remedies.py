@@ -35,7 +35,7 @@ ITERATIONS = 150  # of each start
 ENOUGH = 4  # remedies
 # Work for all remedies, and what a search for postures counts as: in iterations of the solver on so many intervals, by
 # the time they take.
-WORK, POSTURES, INTERVALS = 4000.0, 70.0, 20
+WORK, POSTURES, INTERVALS = 3000.0, 70.0, 20
 HOLDS = 4.0  # likewise, whether the object can be held at both ends of a motion that is known
 # Of seeds, for postures. With three rounds of them and as much work in all, two of eight remedies were not found.
 ROUNDS = 1
