@@ -2,6 +2,6 @@
 
 import sys
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 
 sys.exit(main())

@@ -16,10 +16,10 @@ import numpy as np
 from benchmarks.case import Case
 from benchmarks.scenarios import PATIENT, Varied, varied_scenarios
 
-from liftopt.lift import Search
-from liftopt.refinement import QUICKEST, distance, neighbour
-from liftopt.scene import motions_of
-from liftopt.workshop import Workshop
+from liftopt.scenario.build import motions_of
+from liftopt.search.cache import Workshop
+from liftopt.search.mesh_refinement import QUICKEST, distance, neighbour
+from liftopt.search.solve import Search
 
 FINE = (40, 80, 160, 320)
 RESTS = ("velocity", "acceleration")

@@ -90,7 +90,7 @@ def scenarios(count: int) -> list[list[str]]:
 
 def is_accepted(overrides: list[str]) -> bool:
     """Whether a scenario is one."""
-    from liftopt.scenario import load_scenario
+    from liftopt.scenario.model import load_scenario
 
     try:
         load_scenario("table5", overrides)
@@ -103,7 +103,7 @@ def choose_vectors(kind: str) -> bool:
     """Let kernels and solver of this process use one kind of vectors; return whether the processor has them."""
     import _liftopt_banded
 
-    from liftopt.collocation import lanes
+    from liftopt.collocation.codegen import simd_kernels as lanes
 
     extensions, operations, _ = SIMD[kind]
     lanes.EXTENSIONS = extensions
@@ -112,9 +112,9 @@ def choose_vectors(kind: str) -> bool:
 
 def answer(overrides: Sequence[str], workshop: Any) -> dict[str, Any]:
     """Solve one scenario and return what is compared."""
-    from liftopt.lift import lift
-    from liftopt.scenario import load_scenario
-    from liftopt.solution import CUT_SHORT
+    from liftopt.scenario.model import load_scenario
+    from liftopt.search.solve import lift
+    from liftopt.solution.solution import CUT_SHORT
 
     began, used = time.monotonic(), time.process_time()
     solution = lift(load_scenario("table5", list(overrides)), workshop=workshop)
@@ -141,7 +141,7 @@ def answer(overrides: Sequence[str], workshop: Any) -> dict[str, Any]:
 
 def child(args: argparse.Namespace) -> int:
     """Solve all scenarios in this process, one line of JSON each."""
-    from liftopt.workshop import Workshop
+    from liftopt.search.cache import Workshop
 
     if args.simd and not choose_vectors(args.simd):
         return 0

@@ -9,9 +9,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.provenance import subject_quantities
-from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.person.provenance import subject_quantities
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
 SUBJECT = Subject(stature=1.75, mass=75.0, sex="male")

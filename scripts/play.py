@@ -2,7 +2,7 @@
 
 import sys
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 
 if __name__ == "__main__":
     sys.exit(main(["view", *sys.argv[1:]]))

@@ -18,9 +18,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from liftopt.errors import InputError, LiftoptError
-from liftopt.lift import lift
-from liftopt.scenario import load_scenario, with_overrides
-from liftopt.workshop import Workshop
+from liftopt.scenario.model import load_scenario, with_overrides
+from liftopt.search.cache import Workshop
+from liftopt.search.solve import lift
 
 RANGES = {
     "human.stature": (1.45, 2.05),

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from liftopt.assessment.finding import Assessment, Finding
 from liftopt.multibody.agent import Grasp
-from liftopt.scenario import load_scenario
-from liftopt.solution import Solution
+from liftopt.scenario.model import load_scenario
+from liftopt.solution.finding import Assessment, Finding
+from liftopt.solution.solution import Solution
 
 
 def pytest_configure() -> None:
@@ -34,7 +34,7 @@ class Solved(NamedTuple):
 @pytest.fixture(scope="session")
 def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
     """Return a function that solves a shipped scenario with overrides, each once a session."""
-    from liftopt.lift import lift
+    from liftopt.search.solve import lift
 
     @cache
     def solve(name: str, *overrides: str) -> Solved:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -117,7 +117,7 @@ def test_files_and_folders_it_names_exist(lab: Path) -> None:
 
 
 def test_papers_own_problem_is_spelled_as_the_command_takes_it() -> None:
-    from liftopt.scenario import load_scenario
+    from liftopt.scenario.model import load_scenario
 
     entries = re.findall(r"--set\s+((?:objective|limits)\.\w+=[\d.]+)", README)
     assert len(entries) == 3

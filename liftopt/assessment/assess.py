@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from liftopt.assessment.finding import ERROR, INFO, PERSON, ROBOT, VERDICT, WARNING, Assessment, Finding, graver
 from liftopt.assessment.grasp import tilt_findings
 from liftopt.assessment.mathematics import failure_findings, mathematics_findings, verdict
 from liftopt.assessment.person import person_findings
 from liftopt.assessment.robot import robot_findings
-from liftopt.interpolation import between_knots
-from liftopt.solution import Solution
+from liftopt.solution.finding import ERROR, INFO, PERSON, ROBOT, VERDICT, WARNING, Assessment, Finding, graver
+from liftopt.solution.interpolation import between_knots
+from liftopt.solution.solution import Solution
 
 # What a verdict quotes where nothing is wrong: codes by subject.
 TELLING = {PERSON: ("strength", "posture", "acgih", "squeeze"), ROBOT: ("torque", "payload", "speed")}

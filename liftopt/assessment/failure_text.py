@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from liftopt.assessment.mathematics import setting
-from liftopt.reasons import Obstacle
-from liftopt.solution import Solution
+from liftopt.solution.infeasibility_report import Obstacle
+from liftopt.solution.solution import Solution
 
 MOST_LINES = 12
 MOST_REASONS = 3  # besides those in the status

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from liftopt.assessment.finding import CAUTION, INFO, PERSON, WARNING, Finding
 from liftopt.assessment.joints import ALL_ALONG, AT_LIMIT
-from liftopt.solution import Solution
-from liftopt.summary import GRAVITY, shares, squeeze
-from liftopt.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import GRAVITY, shares, squeeze
 
 
 def cap_findings(fine: Solution, agent: AgentTrajectory, subject: str) -> Iterator[Finding]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.assessment.finding import CAUTION, INFO, WARNING, Finding, percent
-from liftopt.solution import Solution
-from liftopt.summary import joint_meaning, limit_share
-from liftopt.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.solution.finding import CAUTION, INFO, WARNING, Finding, percent
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import joint_meaning, limit_share
 
 Array = npt.NDArray[np.float64]
 Directions = Mapping[tuple[str, int], str]

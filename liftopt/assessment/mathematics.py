@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf, isfinite
 
-from liftopt.assessment.finding import CAUTION, ERROR, INFO, MATHEMATICS, VERDICT, Finding
-from liftopt.checks import BETWEEN_KNOTS
-from liftopt.reasons import Remedy
-from liftopt.solution import CUT_SHORT, Solution
+from liftopt.solution.checks import BETWEEN_KNOTS
+from liftopt.solution.finding import CAUTION, ERROR, INFO, MATHEMATICS, VERDICT, Finding
+from liftopt.solution.infeasibility_report import Remedy
+from liftopt.solution.solution import CUT_SHORT, Solution
 
 LARGE_ERROR = 0.05  # of the objective; more is a caution
 EXCEEDED = 1e-3  # excess between knots worth a word, in its unit

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from liftopt.assessment.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
 from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
 from liftopt.ergonomics.rula import ACTION
-from liftopt.multibody.provenance import subject_quantities
-from liftopt.multibody.range_of_motion import RANGES, VELOCITY_SOURCE
-from liftopt.multibody.strength import STRENGTHS
-from liftopt.scene import subject_of
-from liftopt.solution import Solution
+from liftopt.multibody.person.provenance import subject_quantities
+from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
+from liftopt.multibody.person.strength import STRENGTHS
+from liftopt.scenario.build import subject_of
+from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
+from liftopt.solution.solution import Solution
 
 CHANGE, INVESTIGATE = 5, 3  # grand scores from which RULA asks for a change, and for a closer look
 UNSURE = ("unverified", "estimate")

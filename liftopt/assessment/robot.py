@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from liftopt.assessment.finding import CAUTION, INFO, ROBOT, WARNING, Finding, percent
 from liftopt.assessment.grasp import cap_findings
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
-from liftopt.multibody import sawyer_description
+from liftopt.multibody.robots import sawyer_description
 from liftopt.multibody.sources import Source
-from liftopt.solution import Solution
-from liftopt.summary import GRAVITY
+from liftopt.solution.finding import CAUTION, INFO, ROBOT, WARNING, Finding, percent
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import GRAVITY
 
 # By the model of the scenario: its payload [kg], where that is from, and where its joints' limits are from.
 DATA: dict[str, tuple[float, Source, Source]] = {

@@ -8,9 +8,9 @@ from shlex import quote
 from textwrap import wrap
 from typing import NamedTuple
 
-from liftopt.assessment.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
-from liftopt.scenario import Scenario
-from liftopt.solution import Solution
+from liftopt.scenario.model import Scenario
+from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
+from liftopt.solution.solution import Solution
 
 WIDTH, MOST_LINES = 80, 25
 HEAD = -1

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from liftopt.collocation.kernels import Kernel
+from liftopt.collocation.codegen.kernels import Kernel
 from liftopt.collocation.scatter import Pattern, hessian_pattern, jacobian_pattern
 
 Array = npt.NDArray[np.float64]

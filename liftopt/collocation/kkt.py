@@ -13,7 +13,7 @@ from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.trajectory import attitude, bearing, cross, free_flyer_state, object_trajectory, turned
+from liftopt.multibody.trajectory import attitude, bearing, cross, free_flyer_state, object_trajectory, turned
 
 Array = npt.NDArray[np.float64]
 # The scale from which on large multipliers relax the test, s_max of Waechter and Biegler (2006), eq. 6.

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.trajectory import attitude, bearing, cross, turned
+from liftopt.multibody.trajectory import attitude, bearing, cross, turned
 
 Array = npt.NDArray[np.float64]
 # A step along the imaginary axis gives a derivative without a difference, so it can be as small as this.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
-from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
+from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 
 Array = npt.NDArray[np.float64]
 

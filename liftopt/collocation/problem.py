@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
+from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.constraints import Constraints, build_constraints
 from liftopt.collocation.dynamics import STRUCTURAL_ZERO, Topology, agent_functions, object_functions
-from liftopt.collocation.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.result_folder import holds_result
-from liftopt.scenario import Scenario
-from liftopt.scenario_file import shipped_scenarios
-from liftopt.scenario_overrides import refuse_contradictions
-from liftopt.scenario_schema import describe
-from liftopt.suggestions import did_you_mean, nearest, nearest_keys
+from liftopt.files.suggestions import did_you_mean, nearest, nearest_keys
+from liftopt.scenario.file import shipped_scenarios
+from liftopt.scenario.model import Scenario
+from liftopt.scenario.overrides import refuse_contradictions
+from liftopt.scenario.schema import describe
+from liftopt.storage.result_folder import holds_result
 
 SET = "--set"
 DASHES = "-\u2013\u2014"  # word processors make dashes of two hyphens

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from liftopt.assessment.text import details_text, verdict_text
-from liftopt.solution import Solution
-from liftopt.summary import summary_dict
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import summary_dict
 
 
 def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: bool) -> str:
@@ -31,7 +31,7 @@ def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: boo
 def _tables(summary: dict[str, Any]) -> str:
     from rich.console import Console  # which every other solve does without
 
-    from liftopt.summary_text import print_details
+    from liftopt.commands.summary_text import print_details
 
     console = Console()
     with console.capture() as capture:

@@ -6,9 +6,9 @@ import numpy as np
 
 from liftopt.crosscheck.systems import CheckedSystem
 from liftopt.multibody.dh import ROTATION_WORLD_PAPER
-from liftopt.multibody.human import human_agent, human_chain, human_root
-from liftopt.multibody.sawyer import sawyer_agent, sawyer_chain, sawyer_root
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.human import human_agent, human_chain, human_root
+from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.robots.sawyer import sawyer_agent, sawyer_chain, sawyer_root
 from liftopt.multibody.table import lifted_table, table_chain
 
 SUBJECT = Subject(stature=1.75, mass=75.0, sex="male")

@@ -1,8 +1,8 @@
 """Conservation of energy: what torques and forces do, against how kinetic and potential energy change.
 
-Along the motion between the knots (``liftopt.interpolation``) the power of every joint torque and of every grasp force
-is integrated by Simpson's rule, in panels that end at the knots, and compared with Pinocchio's energies. The work never
-meets the mass matrix and the energies never meet the torques, so a wrong torque, force or velocity shows.
+Along the motion between the knots (``solution/interpolation.py``) the power of every joint torque and of every grasp
+force is integrated by Simpson's rule, in panels that end at the knots, and compared with Pinocchio's energies. The
+work never meets the mass matrix and the energies never meet the torques, so a wrong torque, force or velocity shows.
 
 An agent and the object each close their books to the error of the quadrature alone, of fourth order. All together
 they close up to what the transcription leaves: the balance of the object holds at the knots only, as does closure, so
@@ -19,11 +19,11 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.interpolation import refined
 from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.scene import agents_of, object_of
-from liftopt.solution import Solution
-from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
+from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
+from liftopt.scenario.build import agents_of, object_of
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 TURNING = "grasp moments"

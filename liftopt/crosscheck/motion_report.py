@@ -9,14 +9,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from liftopt.checks import Check
 from liftopt.crosscheck.energy import energy_books, turned_in_hands, unexplained
 from liftopt.crosscheck.mujoco_dynamics import inverse_dynamics
 from liftopt.crosscheck.mujoco_forward import BANDWIDTH, WINDOW, Deviation, Simulation
 from liftopt.crosscheck.transcriptions import mesh_study
 from liftopt.crosscheck.transcriptions import render as render_study
 from liftopt.errors import InputError
-from liftopt.solution import Solution
+from liftopt.solution.checks import Check
+from liftopt.solution.solution import Solution
 
 Say = Callable[[str], None]
 INVERSE_DYNAMICS = 1e-6  # relative

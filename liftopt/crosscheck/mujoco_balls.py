@@ -17,8 +17,8 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.mujoco_model import import_mujoco
-from liftopt.trajectory import AgentTrajectory, cross
+from liftopt.multibody.mujoco_model import import_mujoco
+from liftopt.multibody.trajectory import AgentTrajectory, cross
 
 Array = npt.NDArray[np.float64]
 TOGETHER = 1e-9  # [m]: axes this near to each other meet in one point

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.mujoco_model import import_mujoco, joint_places, spec_of, states_of
-from liftopt.solution import Solution
+from liftopt.multibody.mujoco_model import import_mujoco, joint_places, spec_of, states_of
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 

@@ -24,10 +24,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
-from liftopt.interpolation import refined
-from liftopt.mujoco_model import States, import_mujoco, spec_of, states_of
-from liftopt.scene import agents_of
-from liftopt.solution import Solution
+from liftopt.multibody.mujoco_model import States, import_mujoco, spec_of, states_of
+from liftopt.scenario.build import agents_of
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 TIME_STEP = 5e-4  # [s], at most

@@ -30,9 +30,9 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
-from liftopt.interpolation import refined
-from liftopt.scene import agents_of, motions_of, object_of, task_of
-from liftopt.solution import Solution
+from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 MESHES = (10, 20, 40, 80, 160)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from liftopt.multibody.anthropometry import landmarks, link_lengths
+from liftopt.multibody.person.anthropometry import landmarks, link_lengths
 from liftopt.multibody.sources import Source
-from liftopt.scenario import Human
-from liftopt.scene import subject_of
+from liftopt.scenario.build import subject_of
+from liftopt.scenario.model import Human
 
 SOURCE = Source(
     "ACGIH (2004), threshold limit values for lifting, Table 1 (at most 2 h a day and 60 lifts an hour), as reprinted "

@@ -14,7 +14,7 @@ from liftopt.ergonomics.rula import ACTION, Rula, rula
 from liftopt.ergonomics.rula_tables import SOURCE as RULA_SOURCE
 from liftopt.ergonomics.strength import StrengthUse, strength_use
 from liftopt.multibody.sources import Source
-from liftopt.solution import Solution
+from liftopt.solution.solution import Solution
 
 Scope = Literal["applies", "indicative", "out of scope"]
 

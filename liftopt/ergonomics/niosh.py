@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from liftopt.multibody.sources import Source
-from liftopt.solution import Solution
-from liftopt.summary import GRAVITY
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import GRAVITY
 
 SOURCE = Source(
     "Waters, Putz-Anderson, Garg & Fine (1993), Ergonomics 36:749-776; Applications Manual for the Revised NIOSH "

@@ -9,9 +9,9 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent
-from liftopt.scene import agents_of
-from liftopt.solution import Solution
-from liftopt.summary import GRAVITY
+from liftopt.scenario.build import agents_of
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import GRAVITY
 
 Array = npt.NDArray[np.float64]
 TRUNK, SHOULDER, ELBOW, WRIST = "human_Q3_link", "human_Q4_link", "human_Q7_link", "human_Q9_link"

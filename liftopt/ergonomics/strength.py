@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.solution import Solution
-from liftopt.summary import limit_share
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import limit_share
 
 Array = npt.NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.summary import joint_meaning, limit_share
-from liftopt.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.solution.summary import joint_meaning, limit_share
 
 Array = npt.NDArray[np.float64]
 

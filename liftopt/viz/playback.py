@@ -9,11 +9,11 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.interpolation import motion_between
 from liftopt.multibody.agent import Agent
-from liftopt.scene import agents_of
-from liftopt.solution import Solution
-from liftopt.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.build import agents_of
+from liftopt.solution.interpolation import motion_between
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between

@@ -11,7 +11,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from liftopt.errors import InputError
-from liftopt.solution import Solution
+from liftopt.solution.solution import Solution
 from liftopt.viz import FORMATS
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_effort import posture_score, strength_used

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from liftopt.checks import FINER
-from liftopt.interpolation import refined
-from liftopt.solution import Solution
+from liftopt.solution.checks import FINER
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
-from liftopt.pareto import Front, Point, ratio_text
+from liftopt.studies.pareto import Front, Point, ratio_text
 from liftopt.viz.plots_labels import label_points
 from liftopt.viz.plots_style import BLUE, FAINT, INK, ORANGE, WIDTH
 

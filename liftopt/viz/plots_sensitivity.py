@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from liftopt.sensitivity import Study
+from liftopt.studies.sensitivity import Study
 from liftopt.viz.plots_style import BLUE, INK, VERMILION, WIDTH
 
 ROW, MARGINS = 0.34, 0.9  # height of a parameter and of what is around all of them [in]

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
 from scipy.spatial import ConvexHull
 
-from liftopt.scene import agents_of, object_of
+from liftopt.scenario.build import agents_of, object_of
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import BLUE, INK, VERMILION, Array
 

@@ -10,22 +10,22 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import liftopt
-from liftopt.assessment.finding import Finding, percent
 from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
-from liftopt.solution import Solution
-from liftopt.summary import summary_dict
+from liftopt.lab.comparison.plots import experiment_tables
+from liftopt.solution.finding import Finding, percent
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import summary_dict
 from liftopt.viz.anatomy import human_curves, robot_curves
-from liftopt.viz.plots_comparison import experiment_tables
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_figures import inline_comparisons, inline_figures
 from liftopt.viz.report_tables import Headline, check_rows, joint_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
 
 if TYPE_CHECKING:
-    from liftopt.lab.experiment import Experiment
+    from liftopt.lab.comparison.experiment import Experiment
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from liftopt.lab.comparison.plots import drawn_comparisons
 from liftopt.viz.plots import PLOTS, drawn, rendered
-from liftopt.viz.plots_comparison import drawn_comparisons
 from liftopt.viz.plots_data import Lift
 
 if TYPE_CHECKING:
-    from liftopt.lab.experiment import Experiment
+    from liftopt.lab.comparison.experiment import Experiment
 
 # The second is as wide as the first, which few readers have; any other would shift the labels.
 FONTS = "'DejaVu Sans', Verdana, Geneva, sans-serif"

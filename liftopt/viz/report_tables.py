@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.multibody.provenance import Quantity, subject_quantities
-from liftopt.scenario import Scenario, scenario_to_dict
-from liftopt.scenario_schema import describe
-from liftopt.scene import subject_of
-from liftopt.solution import Solution
+from liftopt.multibody.person.provenance import Quantity, subject_quantities
+from liftopt.scenario.build import subject_of
+from liftopt.scenario.model import Scenario, scenario_to_dict
+from liftopt.scenario.schema import describe
+from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import JointCurve
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.dh import rotation_z, translation
-from liftopt.scene import subject_of
-from liftopt.solution import Solution
+from liftopt.scenario.build import subject_of
+from liftopt.solution.solution import Solution
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
 from liftopt.viz.scene_commands import Command, clip, place, set_object

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from liftopt.multibody.anthropometry import dimension, girth_radius, landmarks, link_lengths
-from liftopt.multibody.segments import SEGMENTS
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.anthropometry import dimension, girth_radius, landmarks, link_lengths
+from liftopt.multibody.person.segments import SEGMENTS
+from liftopt.multibody.person.subject import Subject
 from liftopt.viz.scene_mesh import Ring, ball, capsule, merged, tube
 from liftopt.viz.scene_part import Colour, Part
 

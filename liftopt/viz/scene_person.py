@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from liftopt.multibody.anthropometry import (
+from liftopt.multibody.person.anthropometry import (
     HEEL_BEHIND_ANKLE,
     HIP_JOINT_SPREAD,
     dimension,
@@ -15,7 +15,7 @@ from liftopt.multibody.anthropometry import (
     landmarks,
     link_lengths,
 )
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.subject import Subject
 from liftopt.viz.scene_head import head_parts
 from liftopt.viz.scene_mesh import Mesh, Ring, capsule, merged, tube
 from liftopt.viz.scene_part import Colour, Part

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.dh import rotation_x, rotation_z, translation
-from liftopt.multibody.sawyer_description import HEAD_IN_FIRST_LINK, JOINTS, described_frames
+from liftopt.multibody.robots.sawyer_description import HEAD_IN_FIRST_LINK, JOINTS, described_frames
 from liftopt.viz.scene_mesh import Mesh
 from liftopt.viz.scene_part import GROUND, Colour, Part
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.interrupt import interrupts
+from liftopt.files.interrupt import interrupts
 from liftopt.viz.viewer_server import FIRST_PORT, PageServer, opened
 
 
@@ -56,7 +56,7 @@ def view(
 
 
 def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str | Path | None) -> str:
-    from liftopt.result_reader import load_result
+    from liftopt.storage.reader import load_result
     from liftopt.viz.viewer_page import playback_page
 
     second = None if other is None else load_result(other)

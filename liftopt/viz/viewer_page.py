@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import InputError
-from liftopt.solution import Solution
+from liftopt.solution.solution import Solution
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_part import Colour

@@ -11,15 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
-from liftopt.collocation.guess import blend, naive_start
-from liftopt.collocation.postures import Posture
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
-from liftopt.scenario import Scenario
-from liftopt.scene import agents_of, motions_of, object_of, task_of
-from liftopt.verify import verify
-from liftopt.workshop import Workshop
+from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
+from liftopt.scenario.model import Scenario
+from liftopt.search.cache import Workshop
+from liftopt.search.initial_guess import blend, naive_start
+from liftopt.search.postures import Posture
+from liftopt.solution.verify import verify
 
 Array = npt.NDArray[np.float64]
 TOLERANCE = 1e-6

@@ -32,8 +32,8 @@ from benchmarks.goals import Row
 from benchmarks.moco_path import as_answer, on_our_models
 from liftopt.collocation.motion import Motion, motion_at, objective_weights
 from liftopt.multibody.agent import Agent
-from liftopt.scenario import with_overrides
-from liftopt.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.model import with_overrides
 
 Array = npt.NDArray[np.float64]
 TOLERANCE, FINE = 1e-3, 1e-6

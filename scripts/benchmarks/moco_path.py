@@ -13,7 +13,7 @@ from benchmarks.case import Case
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.motion import objective_weights
 from liftopt.collocation.task import OBJECT_COORDINATES
-from liftopt.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
+from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 
 Array = npt.NDArray[np.float64]
 RATES = ("q", "v", "a")

@@ -19,7 +19,7 @@ from benchmarks.case import TOLERANCE, Case, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import table5
 from benchmarks.solves import counts, spent
-from liftopt.collocation import libraries
+from liftopt.collocation.codegen import kernel_cache as libraries
 from liftopt.collocation.motion import motion_at
 
 BATCH = 50

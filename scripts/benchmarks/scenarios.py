@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from liftopt.collocation.guess import posture_starts
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.spline import RestToRestSpline
-from liftopt.lift import lift
-from liftopt.scenario import Scenario, load_scenario
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scenario.build import agents_of, object_of, task_of
+from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.search.initial_guess import posture_starts
+from liftopt.search.solve import lift
 
 FILE = Path(__file__).with_name("scenarios.json")
 COUNT, WITH_REFERENCE, SEED, STARTS = 60, 40, 2026, 8

@@ -13,12 +13,12 @@ from benchmarks.scenarios import Varied, table5, varied_scenarios
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import FEWEST
-from liftopt.plan import Plan
-from liftopt.refinement import meshes_below, neighbour
-from liftopt.replan import Replanner
-from liftopt.scenario import Scenario, with_overrides
-from liftopt.scene import agents_of, object_of, task_of
-from liftopt.workshop import Workshop
+from liftopt.control.replanning import Replanner
+from liftopt.scenario.build import agents_of, object_of, task_of
+from liftopt.scenario.model import Scenario, with_overrides
+from liftopt.search.cache import Workshop
+from liftopt.search.candidate import Plan
+from liftopt.search.mesh_refinement import meshes_below, neighbour
 
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
 MIXES, MIXES_SEED = 100, 3

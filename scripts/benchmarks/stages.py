@@ -14,15 +14,23 @@ import casadi as ca
 import numpy as np
 
 from benchmarks.case import PATIENCE, TOLERANCE, Case, measure, repeat
-from liftopt import result_writer
-from liftopt.collocation.guess import posture_starts
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import SolverResult
-from liftopt.lift import lift
-from liftopt.scene import agents_of, object_of, task_of
-from liftopt.verify import verify
+from liftopt.scenario.build import agents_of, object_of, task_of
+from liftopt.search.initial_guess import posture_starts
+from liftopt.search.solve import lift
+from liftopt.solution.verify import verify
+from liftopt.storage import writer as result_writer
 
-MODULES = ("numpy", "scipy.sparse", "casadi", "pinocchio", "liftopt.cli", "liftopt.lift", "liftopt.result_writer")
+MODULES = (
+    "numpy",
+    "scipy.sparse",
+    "casadi",
+    "pinocchio",
+    "liftopt.commands.cli",
+    "liftopt.search.solve",
+    "liftopt.storage.writer",
+)
 SLOW = 3  # repeats of what takes long
 SOLVERS = ("ipopt", "banded")
 

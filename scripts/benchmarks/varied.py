@@ -9,8 +9,8 @@ import numpy as np
 from benchmarks.case import Case
 from benchmarks.goals import Row
 from benchmarks.scenarios import PATIENT, REST, STARTS, varied_scenarios
-from liftopt.lift import lift
-from liftopt.workshop import Workshop
+from liftopt.search.cache import Workshop
+from liftopt.search.solve import lift
 
 AS_GOOD = 1e-3  # relative
 

@@ -16,9 +16,9 @@ import numpy as np
 from benchmarks.case import measure, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import table5
-from liftopt.lift import lift
-from liftopt.solution import Solution
-from liftopt.workshop import Workshop
+from liftopt.search.cache import Workshop
+from liftopt.search.solve import lift
+from liftopt.solution.solution import Solution
 
 MANY = 64
 # Runs a command and prints its wall time [s], processor time [s], peak memory [kB] and exit status. A small process of

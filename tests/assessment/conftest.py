@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from liftopt.solution import Solution
+from liftopt.solution.solution import Solution
 
 
 @pytest.fixture(scope="session")

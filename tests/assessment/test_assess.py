@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from liftopt.assessment.assess import assess
-from liftopt.assessment.finding import Assessment, Finding
 from liftopt.ergonomics.measures import ergonomics_of
-from liftopt.interpolation import between_knots
-from liftopt.reasons import Obstacle, Remedy
-from liftopt.solution import Solution
-from liftopt.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.solution.finding import Assessment, Finding
+from liftopt.solution.infeasibility_report import Obstacle, Remedy
+from liftopt.solution.interpolation import between_knots
+from liftopt.solution.solution import Solution
 
 GRAVITY = 9.81
 

@@ -10,9 +10,9 @@ import pytest
 
 from liftopt.assessment.failure_text import MOST_LINES as MOST_OF_FAILURE
 from liftopt.assessment.failure_text import failure_text
-from liftopt.assessment.finding import Assessment, Finding, percent
 from liftopt.assessment.text import MOST_LINES, details_text, verdict_text
-from liftopt.reasons import Obstacle, Remedy
+from liftopt.solution.finding import Assessment, Finding, percent
+from liftopt.solution.infeasibility_report import Obstacle, Remedy
 
 
 def test_it_opens_with_the_verdict_and_says_who_lifts_what_where(solution: SimpleNamespace) -> None:

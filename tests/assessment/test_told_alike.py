@@ -11,13 +11,13 @@ import h5netcdf
 import h5py
 import pytest
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.errors import InputError
-from liftopt.interpolation import between_knots
-from liftopt.result_reader import load_result
-from liftopt.result_writer import save
-from liftopt.summary import summary_dict
+from liftopt.solution.interpolation import between_knots
+from liftopt.solution.summary import summary_dict
+from liftopt.storage.reader import load_result
+from liftopt.storage.writer import save
 from liftopt.viz.report import report_html
 
 CONTRACT = {"code", "severity", "agent", "joint", "time", "value", "limit", "source", "message"}

@@ -15,16 +15,16 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
-from liftopt.collocation.guess import Start, posture_starts
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
+from liftopt.search.initial_guess import Start, posture_starts
 
 TEN_DEGREES = np.radians(10.0)
 

@@ -11,8 +11,8 @@ import pytest
 
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
 from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
 PERIOD = 1.7

@@ -9,7 +9,6 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation.guess import posture_starts
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.ipopt import Ipopt
@@ -17,8 +16,9 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import ModelError
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.robots.sawyer import sawyer_agent
+from liftopt.search.initial_guess import posture_starts
 
 EDGES = np.array([[-0.225, 0.0, -0.01], [0.225, 0.0, -0.01]])
 

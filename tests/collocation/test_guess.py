@@ -9,8 +9,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation import postures
-from liftopt.collocation.guess import (
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.result import Multipliers, SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import LiftTask
+from liftopt.errors import SolverError
+from liftopt.search import postures
+from liftopt.search.initial_guess import (
     PRESSED,
     Start,
     naive_start,
@@ -19,13 +24,8 @@ from liftopt.collocation.guess import (
     repertoire,
     turned,
 )
-from liftopt.collocation.moves import ELSEWHERE, SAME, Move, _least_there, apart, combinations
-from liftopt.collocation.postures import PostureSolver, seed_coordinates
-from liftopt.collocation.problem import Problem, Team
-from liftopt.collocation.solvers.result import Multipliers, SolverResult
-from liftopt.collocation.spline import RestToRestSpline
-from liftopt.collocation.task import LiftTask
-from liftopt.errors import SolverError
+from liftopt.search.moves import ELSEWHERE, SAME, Move, _least_there, apart, combinations
+from liftopt.search.postures import PostureSolver, seed_coordinates
 
 
 @pytest.mark.parametrize("end", ["start", "end"])
@@ -152,7 +152,7 @@ def test_what_others_need_with_the_object_there_comes_from_the_nearest_good_post
 def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift: Problem) -> None:
     """Pinocchio's forward kinematics: no two moves begin and end with all links within a few centimetres."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("liftopt.collocation.moves.OTHERS_WEIGHT", 0.0)
+        patch.setattr("liftopt.search.moves.OTHERS_WEIGHT", 0.0)
         found = repertoire(small_lift, 8, 0, np.inf)
     assert found is not None
     for i, (agent, moves) in enumerate(zip(small_lift.team.agents, found.moves, strict=True)):

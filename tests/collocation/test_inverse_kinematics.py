@@ -10,12 +10,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation.inverse_kinematics import CLOSED, InverseKinematics
-from liftopt.collocation.postures import seed_coordinates
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import HalfSpace
+from liftopt.search.inverse_kinematics import CLOSED, InverseKinematics
+from liftopt.search.postures import seed_coordinates
 
 
 def seeds_of(problem: Problem, count: int) -> np.ndarray:

@@ -9,9 +9,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation.guess import naive_start
-from liftopt.collocation.mirrors import in_line, mirrored
 from liftopt.collocation.problem import Problem
+from liftopt.search.initial_guess import naive_start
+from liftopt.search.mirrored_joints import in_line, mirrored
 
 
 def test_mirrored_arm_holds_its_last_link_as_before(small_lift: Problem) -> None:
@@ -48,5 +48,5 @@ def test_only_joints_between_axes_that_can_be_parallel_are_mirrored(small_lift: 
     arm: Any = SimpleNamespace(reduced=lambda: model, posture=np.zeros(4))
     np.testing.assert_allclose(in_line(arm), [np.nan, 0.0, np.nan, np.nan], atol=1e-12)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("liftopt.collocation.mirrors.in_line", lambda agent: np.full(len(agent.posture), np.nan))
+        patch.setattr("liftopt.search.mirrored_joints.in_line", lambda agent: np.full(len(agent.posture), np.nan))
         assert list(mirrored(small_lift, naive_start(small_lift).x)) == []

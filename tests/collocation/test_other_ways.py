@@ -9,14 +9,14 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation.batch import Batch
-from liftopt.collocation.detours import SAME as SAME_POSTURE
-from liftopt.collocation.detours import TOO_HIGH, detours, rests
-from liftopt.collocation.guess import Start
 from liftopt.collocation.layout import OBJECT_SIZE
-from liftopt.collocation.moves import apart
-from liftopt.collocation.other_ways import GAP, MOST, SAME, other_ways
-from liftopt.collocation.postures import PostureSolver
 from liftopt.collocation.problem import Problem
+from liftopt.search.alternative_paths import GAP, MOST, SAME, other_ways
+from liftopt.search.initial_guess import Start
+from liftopt.search.moves import apart
+from liftopt.search.postures import PostureSolver
+from liftopt.search.via_postures import SAME as SAME_POSTURE
+from liftopt.search.via_postures import TOO_HIGH, detours, rests
 
 FOREVER = 1e12
 

@@ -12,9 +12,9 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
-from liftopt.lift import Search
-from liftopt.scenario import load_scenario
-from liftopt.workshop import Workshop
+from liftopt.scenario.model import load_scenario
+from liftopt.search.cache import Workshop
+from liftopt.search.solve import Search
 
 
 class Solved:

@@ -142,11 +142,11 @@ def test_inverse_kinematics_turns_the_hand(
     human: Agent, sawyer: Agent, table: LiftedObject, make_task: Callable[..., LiftTask]
 ) -> None:
     """Pinocchio: every posture that is said to hold has both hands within their angle on the object."""
-    from liftopt.collocation.inverse_kinematics import InverseKinematics
-    from liftopt.collocation.postures import seed_coordinates
     from liftopt.collocation.spline import Mesh
-    from liftopt.multibody.human import HAND_UNDER_EDGE
-    from liftopt.multibody.sawyer import LEVEL_TOOL
+    from liftopt.multibody.person.human import HAND_UNDER_EDGE
+    from liftopt.multibody.robots.sawyer import LEVEL_TOOL
+    from liftopt.search.inverse_kinematics import InverseKinematics
+    from liftopt.search.postures import seed_coordinates
 
     limit, grips = np.radians(20.0), (HAND_UNDER_EDGE.T, LEVEL_TOOL.T)
     agents = tuple(

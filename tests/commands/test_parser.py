@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 
 
 @pytest.fixture(autouse=True)
@@ -15,7 +15,7 @@ def nothing_is_solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def lift(*_: object, **__: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("liftopt.lift.lift", lift)
+    monkeypatch.setattr("liftopt.search.solve.lift", lift)
     monkeypatch.chdir(tmp_path)
 
 

@@ -11,9 +11,9 @@ import pytest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson
 from liftopt.crosscheck.instant import instant
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
-from liftopt.interpolation import refined
-from liftopt.scene import agents_of, object_of, task_of
-from liftopt.trajectory import agent_trajectory, object_trajectory
+from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
+from liftopt.scenario.build import agents_of, object_of, task_of
+from liftopt.solution.interpolation import refined
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 STATES = 5

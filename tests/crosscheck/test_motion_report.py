@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 import liftopt.crosscheck.motion_report as report
-from liftopt.checks import Check
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.crosscheck.motion_report import motion_report, render, result_report
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy
 from liftopt.errors import InputError
+from liftopt.solution.checks import Check
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 

@@ -9,8 +9,8 @@ import pytest
 
 from liftopt.crosscheck.mujoco_balls import ball_joints, ball_motions
 from liftopt.crosscheck.mujoco_forward import Simulation
-from liftopt.mujoco_model import import_mujoco
-from liftopt.scene import agents_of
+from liftopt.multibody.mujoco_model import import_mujoco
+from liftopt.scenario.build import agents_of
 
 
 @pytest.fixture(scope="module")

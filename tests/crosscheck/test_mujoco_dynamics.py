@@ -14,8 +14,8 @@ import pytest
 
 from liftopt.crosscheck.mujoco_dynamics import inverse_dynamics
 from liftopt.errors import InputError
-from liftopt.interpolation import refined
-from liftopt.mujoco_model import merged_urdf, spec_of, states_of
+from liftopt.multibody.mujoco_model import merged_urdf, spec_of, states_of
+from liftopt.solution.interpolation import refined
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 

@@ -104,13 +104,19 @@ def test_crosscheck_imports_nothing_of_the_solve() -> None:
 
     What judges a result reads it too; the two transcriptions are compared by one module that solves with both.
     """
-    result = ("liftopt.checks", "liftopt.interpolation", "liftopt.mujoco_model", "liftopt.scene", "liftopt.solution")
+    result = (
+        "liftopt.solution.checks",
+        "liftopt.solution.interpolation",
+        "liftopt.multibody.mujoco_model",
+        "liftopt.scenario.build",
+        "liftopt.solution.solution",
+    )
     judges = {
-        "energy.py": (*result, "liftopt.trajectory"),
+        "energy.py": (*result, "liftopt.multibody.trajectory"),
         "hermite_simpson.py": ("casadi", "functools", "time", "liftopt.collocation.task"),
         "instant.py": ("casadi", "itertools", "liftopt.collocation.task", "liftopt.pinocchio_casadi"),
         "motion_report.py": result,
-        "mujoco_balls.py": (*result, "liftopt.trajectory"),
+        "mujoco_balls.py": (*result, "liftopt.multibody.trajectory"),
         "mujoco_dynamics.py": result,
         "mujoco_forward.py": (*result, "functools"),
     }

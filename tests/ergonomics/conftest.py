@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.scene import agents_of
-from liftopt.solution import Solution
-from liftopt.trajectory import agent_trajectory
+from liftopt.multibody.trajectory import agent_trajectory
+from liftopt.scenario.build import agents_of
+from liftopt.solution.solution import Solution
 
 
 @pytest.fixture(scope="session")

@@ -12,18 +12,18 @@ import numpy.typing as npt
 import pinocchio as pin
 import pytest
 
-from liftopt.interpolation import refined
-from liftopt.lab.marker_map import MarkerMap
-from liftopt.lab.recorded_lift import RecordedLift
-from liftopt.lab.recording import Recording
-from liftopt.multibody.anthropometry import LinkLengths, link_lengths
+from liftopt.lab.mocap.marker_map import MarkerMap
+from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.mocap.recording import Recording
 from liftopt.multibody.dh import human_rows
-from liftopt.multibody.human import human_chain, human_root
-from liftopt.multibody.segments import SEGMENTS
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.anthropometry import LinkLengths, link_lengths
+from liftopt.multibody.person.human import human_chain, human_root
+from liftopt.multibody.person.segments import SEGMENTS
+from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
-from liftopt.scenario_schema import section
-from liftopt.solution import Solution
+from liftopt.scenario.schema import section
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from liftopt.lab.marker_map import load_marker_map
-from liftopt.lab.motion_table import read_motion_table
-from liftopt.lab.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
-from liftopt.lab.recorded_scenario import recorded_scenario
+from liftopt.lab.mocap.marker_map import load_marker_map
+from liftopt.lab.mocap.motion_table import read_motion_table
+from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
+from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 
 
 @pytest.fixture(scope="module")

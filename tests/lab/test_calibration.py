@@ -10,11 +10,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.errors import InputError
-from liftopt.lab.calibration import Calibration, Curve, calibrate, load_calibration, save_calibration
-from liftopt.lab.calibration_series import Series, mean_series, read_series
-from liftopt.lab.voltage_divider import Divider
+from liftopt.lab.forces.calibration import Calibration, Curve, calibrate, load_calibration, save_calibration
+from liftopt.lab.forces.calibration_series import Series, mean_series, read_series
+from liftopt.lab.forces.voltage_divider import Divider
 
 DIVIDER = Divider(supply=5.0, resistor=10_000.0, full_scale=1023)
 SIEMENS_PER_NEWTON = 2e-5  # 5 kohm at 10 N: the order of an FSR 402 (data sheet, Interlink 2010)

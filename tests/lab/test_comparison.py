@@ -11,15 +11,15 @@ import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.interpolation import refined
-from liftopt.lab.comparison import PERCENT, SHARE, Comparison, measures
-from liftopt.lab.experiment import experiment
-from liftopt.lab.force_record import ForceRecord
-from liftopt.lab.recorded_lift import RecordedLift
-from liftopt.lab.recorded_scenario import recorded_scenario
-from liftopt.multibody.subject import Subject
-from liftopt.solution import Solution
-from liftopt.summary import GRAVITY
+from liftopt.lab.comparison.comparison import PERCENT, SHARE, Comparison, measures
+from liftopt.lab.comparison.experiment import experiment
+from liftopt.lab.forces.force_record import ForceRecord
+from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.mocap.recorded_scenario import recorded_scenario
+from liftopt.multibody.person.subject import Subject
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import GRAVITY
 
 Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.cli import main
-from liftopt.lab.recorded_file import save_recorded
-from liftopt.scenario import load_scenario
+from liftopt.commands.cli import main
+from liftopt.lab.mocap.recorded_file import save_recorded
+from liftopt.scenario.model import load_scenario
 from liftopt.viz import plots_comparison, report
 from liftopt.viz.plots import PLOTS
 from liftopt.viz.report_figures import InlineFigure

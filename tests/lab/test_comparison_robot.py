@@ -12,13 +12,13 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.interpolation import refined
-from liftopt.lab.bags import Kind, Record, write_bag
-from liftopt.lab.experiment import experiment
-from liftopt.lab.robot_record import RobotRecord, read_robot_record
-from liftopt.lab.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosMessages
-from liftopt.scene import robot_of
-from liftopt.solution import Solution
+from liftopt.lab.comparison.experiment import experiment
+from liftopt.lab.robot.bags import Kind, Record, write_bag
+from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
+from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosMessages
+from liftopt.scenario.build import robot_of
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 pytest.importorskip("rosbags", reason="rosbags is not installed (it is in the extra 'lab')")
 

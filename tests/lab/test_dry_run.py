@@ -11,15 +11,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.cli import BAD_INPUT, SOLVED, main
-from liftopt.lab.action_server import PERIOD, ActionServer, MinimumJerk
-from liftopt.lab.dry_run import BEFORE, POSITION_NOISE, DryRun, dry_run
-from liftopt.lab.dry_run_plan import Plan
-from liftopt.lab.dry_run_summary import summarised
-from liftopt.lab.joint_trajectory import JOINTS, joint_trajectory
-from liftopt.lab.simulated_arm import STEP, SimulatedArm
-from liftopt.multibody.sawyer import JOINT_SIGNS
-from liftopt.scene import agents_of
+from liftopt.commands.cli import BAD_INPUT, SOLVED, main
+from liftopt.lab.robot.action_server import PERIOD, ActionServer, MinimumJerk
+from liftopt.lab.robot.dry_run import BEFORE, POSITION_NOISE, DryRun, dry_run
+from liftopt.lab.robot.dry_run_plan import Plan
+from liftopt.lab.robot.dry_run_summary import summarised
+from liftopt.lab.robot.joint_trajectory import JOINTS, joint_trajectory
+from liftopt.lab.robot.simulated_arm import STEP, SimulatedArm
+from liftopt.multibody.robots.sawyer import JOINT_SIGNS
+from liftopt.scenario.build import agents_of
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 GOAL_TIME = 2.0

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.cli import BAD_INPUT, SOLVED, main
+from liftopt.commands.cli import BAD_INPUT, SOLVED, main
 from liftopt.errors import InputError
-from liftopt.lab import trajectory_files
-from liftopt.lab.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
-from liftopt.lab.robot_limits import check_limits, check_motion, read_pose
+from liftopt.lab.robot import trajectory_files
+from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
+from liftopt.lab.robot.robot_limits import check_limits, check_motion, read_pose
 from liftopt.multibody.dh import rotation_z, translation
-from liftopt.multibody.sawyer import sawyer_limits
-from liftopt.multibody.sawyer_description import FLANGE_IN_LAST_LINK, described_frames
+from liftopt.multibody.robots.sawyer import sawyer_limits
+from liftopt.multibody.robots.sawyer_description import FLANGE_IN_LAST_LINK, described_frames
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 GOAL_TIME = 1.25

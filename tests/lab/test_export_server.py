@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from liftopt.cli import BAD_INPUT, SOLVED, main
+from liftopt.commands.cli import BAD_INPUT, SOLVED, main
 from liftopt.errors import InputError
-from liftopt.lab.action_server import server_curve
-from liftopt.lab.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
-from liftopt.lab.robot_limits import check_server, check_start
-from liftopt.multibody.sawyer import sawyer_limits
-from liftopt.result_writer import save
-from liftopt.solution import Solution
+from liftopt.lab.robot.action_server import server_curve
+from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
+from liftopt.lab.robot.robot_limits import check_server, check_start
+from liftopt.multibody.robots.sawyer import sawyer_limits
+from liftopt.solution.solution import Solution
+from liftopt.storage.writer import save
 
 Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.errors import InputError
-from liftopt.lab.calibration import Calibration, Curve, calibrate, save_calibration
-from liftopt.lab.force_file import read_forces, write_forces
-from liftopt.lab.force_record import BEYOND, MISSING, SATURATED, hand_force, side
-from liftopt.lab.voltage_divider import Divider
+from liftopt.lab.forces.calibration import Calibration, Curve, calibrate, save_calibration
+from liftopt.lab.forces.force_file import read_forces, write_forces
+from liftopt.lab.forces.force_record import BEYOND, MISSING, SATURATED, hand_force, side
+from liftopt.lab.forces.voltage_divider import Divider
 
 SIX = ("finger1", "finger2", "finger3", "finger4", "thumb1", "thumb2")
 # 2 N for a volt, up to 8 N: a straight line, so that every force can be checked by hand.

@@ -10,8 +10,8 @@ import pytest
 import tomli_w
 
 from liftopt.errors import InputError
-from liftopt.lab.marker_map import load_marker_map, mapped_markers, shipped_maps
-from liftopt.lab.recording import Recording
+from liftopt.lab.mocap.marker_map import load_marker_map, mapped_markers, shipped_maps
+from liftopt.lab.mocap.recording import Recording
 
 
 def test_shipped_mappings_load() -> None:

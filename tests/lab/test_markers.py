@@ -10,15 +10,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from liftopt.errors import InputError
-from liftopt.lab.filtering import low_pass
-from liftopt.lab.gaps import fill_gaps
-from liftopt.lab.recording import Recording
-from liftopt.lab.rigid import common_point, fit_poses, mean_shape
-from liftopt.lab.scaling import ScaledSubject, measured_chain
-from liftopt.multibody.anthropometry import LinkLengths, link_lengths
+from liftopt.lab.mocap.filtering import low_pass
+from liftopt.lab.mocap.gaps import fill_gaps
+from liftopt.lab.mocap.recording import Recording
+from liftopt.lab.mocap.rigid import common_point, fit_poses, mean_shape
+from liftopt.lab.mocap.scaling import ScaledSubject, measured_chain
 from liftopt.multibody.dh import DHChain
-from liftopt.multibody.human import human_chain, human_root
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.anthropometry import LinkLengths, link_lengths
+from liftopt.multibody.person.human import human_chain, human_root
+from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 
 RATE = 100.0

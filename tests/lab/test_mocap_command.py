@@ -11,7 +11,7 @@ import pytest
 import tomli_w
 import xarray
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 
 
 @pytest.fixture

@@ -11,16 +11,16 @@ import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.interpolation import refined
-from liftopt.lab.bags import Record, write_bag
-from liftopt.lab.experiment import experiment
-from liftopt.lab.joint_trajectory import JOINTS
-from liftopt.lab.motion_start import lift_start, motion_start
-from liftopt.lab.robot_record import RobotRecord, read_robot_record
-from liftopt.lab.ros_messages import FEEDBACK, JOINT_STATE, LOG, SECOND, RosMessages
-from liftopt.lab.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
-from liftopt.multibody.sawyer import JOINT_SIGNS
-from liftopt.solution import Solution
+from liftopt.lab.comparison.experiment import experiment
+from liftopt.lab.comparison.motion_start import lift_start, motion_start
+from liftopt.lab.robot.bags import Record, write_bag
+from liftopt.lab.robot.joint_trajectory import JOINTS
+from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
+from liftopt.lab.robot.ros_messages import FEEDBACK, JOINT_STATE, LOG, SECOND, RosMessages
+from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
+from liftopt.multibody.robots.sawyer import JOINT_SIGNS
+from liftopt.solution.interpolation import refined
+from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 Plan = tuple[Array, Array]

@@ -11,10 +11,10 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.hand_force import HandForce
-from liftopt.lab.recorded_file import load_recorded, save_recorded
-from liftopt.lab.recorded_lift import Load, RecordedLift, recorded_lift
-from liftopt.lab.recording import TO_Z_UP, ForcePlate, Recording, in_metres
+from liftopt.lab.mocap.hand_force import HandForce
+from liftopt.lab.mocap.recorded_file import load_recorded, save_recorded
+from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, recorded_lift
+from liftopt.lab.mocap.recording import TO_Z_UP, ForcePlate, Recording, in_metres
 from liftopt.multibody.urdf import load_model
 
 CUTOFF = 20.0  # Hz; far above the lift's 1 Hz, so that the filter changes nothing that is tested

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.errors import InputError
-from liftopt.lab.calibration import Calibration, Curve
-from liftopt.lab.calibration_series import read_series
-from liftopt.lab.force_file import read_forces
-from liftopt.lab.hand_force import read_hand_force
-from liftopt.lab.motion_table import read_motion_table
-from liftopt.lab.trc import read_trc
-from liftopt.lab.voltage_divider import Divider
+from liftopt.lab.forces.calibration import Calibration, Curve
+from liftopt.lab.forces.calibration_series import read_series
+from liftopt.lab.forces.force_file import read_forces
+from liftopt.lab.forces.voltage_divider import Divider
+from liftopt.lab.mocap.hand_force import read_hand_force
+from liftopt.lab.mocap.motion_table import read_motion_table
+from liftopt.lab.mocap.trc import read_trc
 
 MARKERS, FRAMES = ("RASI", "STER", "C7", "MC2"), 20
 AXES = "\t\t" + "\t".join(f"{axis}{k + 1}" for k in range(len(MARKERS)) for axis in "XYZ")

@@ -11,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from liftopt.errors import InputError
-from liftopt.lab.force_file import write_forces
-from liftopt.lab.force_record import ForceRecord
-from liftopt.lab.hand_force import HandForce, read_hand_force
-from liftopt.lab.motion_table import read_motion_table
-from liftopt.lab.trc import read_trc
+from liftopt.lab.forces.force_file import write_forces
+from liftopt.lab.forces.force_record import ForceRecord
+from liftopt.lab.mocap.hand_force import HandForce, read_hand_force
+from liftopt.lab.mocap.motion_table import read_motion_table
+from liftopt.lab.mocap.trc import read_trc
 
 # As OpenSim writes it: names padded over three columns, an empty line before the data, a marker not seen left empty.
 TRC = (

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from liftopt.multibody.anthropometry import landmarks, link_lengths
 from liftopt.multibody.dh import row_tail
-from liftopt.multibody.human import Subject, human_agent, human_chain, human_root
-from liftopt.multibody.segments import SEGMENTS
+from liftopt.multibody.person.anthropometry import landmarks, link_lengths
+from liftopt.multibody.person.human import Subject, human_agent, human_chain, human_root
+from liftopt.multibody.person.segments import SEGMENTS
 
 SUBJECT = Subject(1.75, 75.0, "male")
 WOMAN = Subject(1.63, 62.0, "female")

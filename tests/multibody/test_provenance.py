@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.provenance import subject_quantities
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.person.provenance import subject_quantities
 
 SUBJECT = Subject(1.7, 68.0, "female")
 

@@ -7,8 +7,8 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.multibody import sawyer_description as described
-from liftopt.multibody.sawyer import sawyer_agent, sawyer_chain, sawyer_root
+from liftopt.multibody.robots import sawyer_description as described
+from liftopt.multibody.robots.sawyer import sawyer_agent, sawyer_chain, sawyer_root
 
 BARE = {"standing_distance": 1.9, "base_height": 0.915, "tool_length": 0.0, "tool_mass": 0.0}
 GRIPPER = BARE | {"tool_length": 0.15, "tool_mass": 0.4}

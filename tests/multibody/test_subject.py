@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.subject import Subject
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ import pinocchio as pin
 import pytest
 import yourdfpy
 
-from liftopt.multibody.human import Subject, human_agent
-from liftopt.multibody.sawyer import sawyer_agent
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.multibody.human import human_agent
-from liftopt.multibody.sawyer import sawyer_agent
-from liftopt.multibody.subject import Subject
+from liftopt.multibody.person.human import human_agent
+from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
 RANDOM_MODELS = 6

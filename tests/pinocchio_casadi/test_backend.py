@@ -69,7 +69,7 @@ def test_another_version_than_built_against_names_the_fix(monkeypatch: pytest.Mo
 
 def test_models_do_not_need_the_extension() -> None:
     code = (
-        "import sys, liftopt.multibody.human, liftopt.multibody.sawyer, liftopt.multibody.table\n"
+        "import sys, liftopt.multibody.person.human, liftopt.multibody.robots.sawyer, liftopt.multibody.table\n"
         f"assert not any(name.startswith('{PACKAGE}') for name in sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -11,8 +11,8 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.multibody.subject import Subject
-from liftopt.scene import agents_of
+from liftopt.multibody.person.subject import Subject
+from liftopt.scenario.build import agents_of
 from liftopt.viz.playback import Playback, continuous, playback_of
 from liftopt.viz.scene import Cast, lift_commands, parts_of
 from liftopt.viz.scene_arrow import arrow_values

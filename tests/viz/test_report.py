@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from liftopt.assessment.assess import assessed
-from liftopt.cli import main
-from liftopt.summary import summary_dict
+from liftopt.commands.cli import main
+from liftopt.solution.summary import summary_dict
 from liftopt.viz.report import report_html
 from liftopt.viz.report_tables import check_rows
 

@@ -19,9 +19,9 @@ from typing import Any
 
 import pytest
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.errors import InputError
-from liftopt.result_reader import load_result
+from liftopt.storage.reader import load_result
 from liftopt.viz.scene_sawyer_meshes import DESCRIPTION
 from liftopt.viz.viewer import view
 from liftopt.viz.viewer_page import playback_page
@@ -33,7 +33,7 @@ PATIENCE = 60.0  # [s]
 RUN = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
-from liftopt.cli import main
+from liftopt.commands.cli import main
 sys.exit(main(["view", *sys.argv[1:]]))
 """
 # A library that swallows an interrupt while it is imported.
@@ -41,7 +41,7 @@ SWALLOW = """
 import builtins, signal
 usual = builtins.__import__
 def swallowing(name, *arguments, **more):
-    if name == "liftopt.result_reader":
+    if name == "liftopt.storage.reader":
         try:
             signal.raise_signal(signal.SIGINT)
         except BaseException:

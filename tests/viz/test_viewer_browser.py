@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.scene import agents_of
+from liftopt.scenario.build import agents_of
 from liftopt.viz.viewer import view
 from liftopt.viz.viewer_page import APART
 

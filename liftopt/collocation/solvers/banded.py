@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.kernels import Say
+from liftopt.collocation.codegen.kernels import Say
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, wide_kernels
 from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, SolverResult

@@ -10,8 +10,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.assembly import Nlp
-from liftopt.collocation.kernels import Say
-from liftopt.collocation.lanes import WideKernel, load_wide
+from liftopt.collocation.codegen.kernels import Say
+from liftopt.collocation.codegen.simd_kernels import WideKernel, load_wide
 from liftopt.collocation.problem import Problem, kernel_requests
 from liftopt.errors import SolverError
 

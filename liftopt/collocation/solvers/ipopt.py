@@ -16,10 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.assembly import Nlp
-from liftopt.collocation.lanes import WideKernel
+from liftopt.collocation.codegen.simd_kernels import WideKernel
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
-from liftopt.collocation.solvers.wide_nlp import wide_nlp
+from liftopt.collocation.solvers.simd_nlp import wide_nlp
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]

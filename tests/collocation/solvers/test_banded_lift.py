@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.collocation.guess import PostureSolver, Start, blend, naive_start, seed_coordinates
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions, elimination_order
@@ -20,10 +19,11 @@ from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import Mesh, RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
-from liftopt.lift import lift
-from liftopt.scenario import Scenario, load_scenario, with_overrides
-from liftopt.scenario_file import shipped_scenarios
-from liftopt.scene import agents_of, object_of, task_of
+from liftopt.scenario.build import agents_of, object_of, task_of
+from liftopt.scenario.file import shipped_scenarios
+from liftopt.scenario.model import Scenario, load_scenario, with_overrides
+from liftopt.search.initial_guess import PostureSolver, Start, blend, naive_start, seed_coordinates
+from liftopt.search.solve import lift
 
 extension = pytest.importorskip("_liftopt_banded")
 TOLERANCE = 1e-6

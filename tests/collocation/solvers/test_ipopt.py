@@ -10,7 +10,6 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation.guess import Start
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
@@ -18,6 +17,7 @@ from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResul
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
+from liftopt.search.initial_guess import Start
 
 
 def test_small_lift_is_solved(solved: SolverResult, small_lift: Problem) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.c3d import read_c3d
-from liftopt.lab.recording import in_metres
+from liftopt.lab.mocap.c3d import read_c3d
+from liftopt.lab.mocap.recording import in_metres
 
 pytest.importorskip("ezc3d", reason="ezc3d is not installed (it is in the extra 'test')")
 

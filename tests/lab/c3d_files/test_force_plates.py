@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.lab.c3d import read_c3d
+from liftopt.lab.mocap.c3d import read_c3d
 
 CORNERS = np.array([[500.0, 20.0, 3.0], [0.0, 0.0, 0.0], [-16.0, 400.0, 0.0], [484.0, 420.0, 3.0]])
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.c3d import read_c3d
-from liftopt.lab.recording import Recording, in_metres
+from liftopt.lab.mocap.c3d import read_c3d
+from liftopt.lab.mocap.recording import Recording, in_metres
 
 
 def _without(group: str, *names: str) -> Callable[[Any], None]:

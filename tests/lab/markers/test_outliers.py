@@ -11,10 +11,10 @@ import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.marker_map import load_marker_map, mapped_markers
-from liftopt.lab.outliers import ShapeGroup, without_far_points, without_outliers
-from liftopt.lab.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
-from liftopt.lab.recording import in_metres
+from liftopt.lab.mocap.marker_map import load_marker_map, mapped_markers
+from liftopt.lab.mocap.outliers import ShapeGroup, without_far_points, without_outliers
+from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
+from liftopt.lab.mocap.recording import in_metres
 
 Array = npt.NDArray[np.float64]
 LOAD = Load(mass=6.0)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.object_motion import lifts
-from liftopt.lab.recorded_file import load_recorded, save_recorded
-from liftopt.lab.recorded_lift import Load, RecordedLift, recorded_lift
-from liftopt.lab.recorded_scenario import recorded_scenario
-from liftopt.lab.recording import ForcePlate, Recording
-from liftopt.lab.trial_part import TrialPart, chosen_part, ignored_markers
+from liftopt.lab.mocap.object_motion import lifts
+from liftopt.lab.mocap.recorded_file import load_recorded, save_recorded
+from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, recorded_lift
+from liftopt.lab.mocap.recorded_scenario import recorded_scenario
+from liftopt.lab.mocap.recording import ForcePlate, Recording
+from liftopt.lab.mocap.trial_part import TrialPart, chosen_part, ignored_markers
 
 LOAD = Load(mass=6.0)
 

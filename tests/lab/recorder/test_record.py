@@ -21,15 +21,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.cli import main
+from liftopt.commands.cli import main
 from liftopt.errors import InputError
-from liftopt.lab.calibration import Calibration, Curve, save_calibration
-from liftopt.lab.force_file import read_forces, write_forces
-from liftopt.lab.record_log import RecordLog
-from liftopt.lab.record_server import RecordServer
-from liftopt.lab.record_session import PRELOAD_READINGS, RecordSession
-from liftopt.lab.serial_device import SerialDevice
-from liftopt.lab.voltage_divider import Divider
+from liftopt.lab.forces.calibration import Calibration, Curve, save_calibration
+from liftopt.lab.forces.force_file import read_forces, write_forces
+from liftopt.lab.forces.record_log import RecordLog
+from liftopt.lab.forces.record_server import RecordServer
+from liftopt.lab.forces.record_session import PRELOAD_READINGS, RecordSession
+from liftopt.lab.forces.serial_device import SerialDevice
+from liftopt.lab.forces.voltage_divider import Divider
 
 THREE = ("finger1", "finger2", "thumb1")
 CALIBRATION = Calibration(divider=Divider(), curves={"all": Curve(voltage=(0.0, 1.0, 4.0), force=(0.0, 2.0, 8.0))})

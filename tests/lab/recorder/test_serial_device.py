@@ -12,8 +12,8 @@ import pytest
 
 from liftopt.errors import InputError
 from liftopt.lab.extra import load_extra
-from liftopt.lab.sensor_lines import Aside, Connection, Event, Garbage, Reading, SensorLines, parse_line
-from liftopt.lab.serial_device import SerialDevice
+from liftopt.lab.forces.sensor_lines import Aside, Connection, Event, Garbage, Reading, SensorLines, parse_line
+from liftopt.lab.forces.serial_device import SerialDevice
 
 
 @pytest.fixture

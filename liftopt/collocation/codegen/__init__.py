@@ -1,0 +1,1 @@
+"""Compiled code of the dynamics and their derivatives, made with CasADi and kept."""

@@ -1,0 +1,65 @@
+"""``liftopt dry-run``: the exported motion on a simulated Sawyer."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from liftopt.commands.export import add_goal_time
+
+MODES = ("velocity", "position", "position_w_id", "torque")
+
+
+def add_dry_run_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
+    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+    parser = commands.add_parser(
+        "dry-run",
+        help="simulate what the robot would really do",
+        description="Simulate Sawyer under its trajectory action server in MuJoCo: how far it is off and late, the "
+        "torques, and where the person's hand would be led. Trials differ by friction, load and the noise of the "
+        "sensors, and are written as bags that a robot could have recorded. The arm's inner loops are not published; "
+        "what is assumed stands in liftopt/lab/simulated_arm.py.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("result", metavar="RESULT", help="a result folder, or its solution.nc")
+    parser.add_argument("--out", metavar="DIR", required=True, help="folder to write; it must not exist")
+    parser.add_argument(
+        "--mode",
+        choices=MODES,
+        default="velocity",
+        help="of the action server; torque is a client that streams the solved torques (default: %(default)s)",
+    )
+    parser.add_argument("--trials", type=int, default=3, metavar="N", help="how many (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what differs between trials (default: 0)")
+    add_goal_time(parser)
+    parser.set_defaults(run=run)
+
+
+def dry_run_text(args: argparse.Namespace, say: Callable[[str], None] | None = None) -> str:
+    """Do what the command line says and return what it prints.
+
+    Raises:
+        InputError: the result, an option or a package is wrong or missing.
+    """
+    from liftopt.lab.extra import check_extra
+    from liftopt.multibody.bounds import checked_number
+    from liftopt.storage.reader import load_result
+
+    check_extra("rosbags", "write ROS bags")
+    check_extra("mujoco", "simulate the robot")
+    trials = int(checked_number("--trials", args.trials, 1, 100, "trials"))
+    seed = int(checked_number("--seed", args.seed, 0, 2**32, "(a whole number)"))
+    goal_time = checked_number("--goal-time", args.goal_time, 0.0, 120.0, "s")
+    from liftopt.files.new_folder import new_folder
+    from liftopt.lab.robot.dry_run import dry_run
+    from liftopt.lab.robot.dry_run_files import write_dry_run
+    from liftopt.lab.robot.dry_run_summary import summarised, summary_text
+
+    solution, out = load_result(args.result), Path(args.out)
+    with new_folder("--out", out) as folder:
+        run = dry_run(solution, args.mode, goal_time, trials, seed, say)
+        summary = summarised(run, solution.scenario.table.depth)
+        names = write_dry_run(run, summary, folder)
+    return f"{summary_text(summary)}\nWritten to {out}: {', '.join(names)}\n"

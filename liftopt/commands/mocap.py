@@ -1,0 +1,198 @@
+"""``liftopt mocap``: a recording of markers becomes a recorded lift, and its summary."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from liftopt.commands.console_text import captured
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from liftopt.lab.mocap.hand_force import HandForce
+    from liftopt.lab.mocap.recorded_lift import RecordedLift
+
+
+def add_mocap_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
+    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+    parser = commands.add_parser(
+        "mocap",
+        help="joint angles and torques of a recorded lift, from its markers",
+        description="Read the markers of a C3D or TRC file, scale the person, follow the markers with the "
+        "13-joint model, and write recorded.nc. The file read is never changed.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("recording", metavar="FILE", help="a C3D or TRC file")
+    parser.add_argument(
+        "--map",
+        required=True,
+        dest="mapping",
+        metavar="MAP",
+        help="a mapping in TOML, or one that is shipped: box_lift",
+    )
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder for recorded.nc")
+    parser.add_argument("--mass", type=float, metavar="KG", help="body mass of the person")
+    parser.add_argument("--sex", choices=("male", "female"), help="whose segment data to use")
+    parser.add_argument(
+        "--stature", type=float, metavar="M", help="height of the person (default: estimated from segments)"
+    )
+    parser.add_argument(
+        "--cutoff", type=float, metavar="HZ", default=6.0, help="of the low-pass filter (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--hand-force",
+        metavar="FILE",
+        help="of the hand on the object: time, fx, fy, fz [s, N] in FILE's axes (CSV, MOT, STO), or of liftopt "
+        "forces; a CSV may name units: time [ms], fx [kN]",
+    )
+    parser.add_argument(
+        "--hand-force-start",
+        type=float,
+        metavar="S",
+        help="when that series starts on FILE's clock (default: as it says)",
+    )
+    parser.add_argument(
+        "--object-mass",
+        type=float,
+        metavar="KG",
+        default=0.0,
+        help="estimate the hand's force from the object's motion",
+    )
+    parser.add_argument(
+        "--hand-share", type=float, metavar="0-1", default=0.5, help="of the right hand in that (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--ignore",
+        action="append",
+        default=[],
+        metavar="MARKER[:FROM-TO]",
+        help="leave a marker out, all the time or from FROM to TO [s]; may be given several times",
+    )
+    parser.add_argument(
+        "--from", dest="start", default="", metavar="S", help="use the trial from this time or C3D event on"
+    )
+    parser.add_argument("--to", dest="end", default="", metavar="S", help="and up to this one")
+    parser.add_argument(
+        "--lift", type=int, metavar="N", help="which lift of the trial counts, from 1, where there are several"
+    )
+    parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
+    parser.set_defaults(run=run)
+
+
+def mocap(args: argparse.Namespace) -> str:
+    """Do what the command line says and return what it prints.
+
+    Raises:
+        InputError: a file, the mapping or an option is wrong.
+    """
+    from liftopt.lab.mocap.marker_map import Person, load_marker_map
+    from liftopt.lab.mocap.recorded_file import save_recorded
+    from liftopt.lab.mocap.recorded_lift import Load, read_recording, recorded_lift
+    from liftopt.lab.mocap.trial_part import TrialPart, ignored_markers
+    from liftopt.multibody.bounds import checked_number
+    from liftopt.scenario.schema import section
+
+    mapping = load_marker_map(args.mapping)
+    given = {name: getattr(args, name) for name in ("mass", "sex", "stature") if getattr(args, name) is not None}
+    person = section(Person).accept("subject", section(Person).plain(mapping.subject) | given)
+    load = Load(
+        measured=_measured(args, mapping.up),
+        mass=checked_number("--object-mass", args.object_mass, 0.0, 100.0, "kg"),
+        share=checked_number("--hand-share", args.hand_share, 0.0, 1.0, "of the load"),
+    )
+    part = TrialPart(args.start, args.end, ignored_markers(args.ignore))
+    recording = read_recording(Path(args.recording))
+    lift = recorded_lift(recording, replace(mapping, subject=person), load, args.cutoff, part)
+    if args.lift is not None:
+        lift = lift.of_lift(args.lift)
+    save_recorded(lift, Path(args.out))
+    return (
+        json.dumps(summary_dict(lift, Path(args.out)), allow_nan=False) + "\n"
+        if args.json
+        else captured(lambda console: _print(lift, args.out, console))
+    )
+
+
+def _measured(args: argparse.Namespace, up: str) -> HandForce | None:
+    from liftopt.lab.mocap.hand_force import read_hand_force
+    from liftopt.multibody.bounds import checked_number
+
+    if not args.hand_force:
+        return None
+    series = read_hand_force(Path(args.hand_force), up)
+    if args.hand_force_start is None:
+        return series
+    start = checked_number("--hand-force-start", args.hand_force_start, -1e6, 1e6, "s")
+    return replace(series, time=series.time - series.time[0] + start)
+
+
+def summary_dict(lift: RecordedLift, out: Path) -> dict[str, Any]:
+    """Return what the command prints with ``--json``: residuals in m, angles in rad."""
+    from liftopt.lab.mocap.recorded_file import about
+
+    known = [float(value) for value in lift.residual_rms]
+    return about(lift) | {
+        "out": str(out),
+        "frames": len(lift.time),
+        "seconds": float(lift.time[-1] - lift.time[0]),
+        "residual_rms": {
+            name: value if value == value else None for name, value in zip(lift.markers, known, strict=True)
+        },
+        "angles": {
+            name: [float(lift.q[:, i].min()), float(lift.q[:, i].max())] for i, name in enumerate(lift.joint_names)
+        },
+        "peak_torque": {name: float(abs(lift.tau[:, i]).max()) for i, name in enumerate(lift.joint_names)},
+    }
+
+
+def _print(lift: RecordedLift, out: str, console: Console) -> None:
+    import numpy as np
+    from rich.markup import escape
+    from rich.table import Table
+
+    def say(text: str) -> None:
+        console.print(escape(text), highlight=False, soft_wrap=True)
+
+    say(f"{lift.source}: {len(lift.time)} frames at {lift.rate:g} Hz, low-pass at {lift.cutoff:g} Hz")
+    person, lengths = lift.subject, lift.lengths
+    how = "estimated" if lift.stature_estimated else "given"
+    say(f"Person: {person.stature:.3f} m ({how}), {person.mass:g} kg, {person.sex}")
+    say(
+        "  "
+        + ", ".join(f"L{i} {value:.3f}" for i, value in enumerate(vars(lengths).values(), start=1))
+        + " m (L1 by stature)"
+    )
+    say(f"Force of the hand: {lift.force_from}")
+    if len(lift.lifts) > 1:
+        say(f"Lifts: {lift.lift_times()}" + ("" if lift.carried else "; choose one by --lift"))
+    if lift.carried:
+        say(f"Object: away from its place from {lift.carried[0]:.2f} to {lift.carried[1]:.2f} s")
+    for gap_kind, count in Counter(gap.filled for gap in lift.gaps).items():
+        markers = sorted({gap.marker for gap in lift.gaps if gap.filled == gap_kind})
+        what = "left open" if gap_kind == "open" else f"filled by {gap_kind}"
+        say(f"Gaps {what}: {count} ({', '.join(markers)})")
+    table = Table("joint", "lowest", "highest", "peak torque", box=None, header_style="bold", pad_edge=False)
+    for i, name in enumerate(lift.joint_names):
+        scale, unit, effort = (1.0, "m", "N") if "GT" in name else (180.0 / np.pi, "deg", "Nm")
+        low, high = scale * lift.q[:, i].min(), scale * lift.q[:, i].max()
+        digits = 3 if unit == "m" else 1
+        table.add_row(
+            name, f"{low:.{digits}f} {unit}", f"{high:.{digits}f} {unit}", f"{abs(lift.tau[:, i]).max():.1f} {effort}"
+        )
+    console.print(table)
+    table = Table("marker", "rms mm", "max mm", box=None, header_style="bold", pad_edge=False)
+    for i, name in enumerate(lift.markers):
+        table.add_row(
+            escape(name), f"{1000 * lift.residual_rms[i]:.1f}", f"{1000 * np.nanmax(lift.residual[:, i]):.1f}"
+        )
+    console.print(table)
+    say(f"All markers: {1000 * float(np.sqrt(np.nanmean(lift.residual**2))):.1f} mm (rms)")
+    for note in lift.notes:
+        say(f"Note: {note}")
+    say(f"Written to {out}")

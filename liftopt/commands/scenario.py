@@ -1,0 +1,48 @@
+"""``liftopt scenario``: a recorded lift becomes a scenario that can be solved and compared with it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+
+def add_scenario_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
+    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+    parser = commands.add_parser(
+        "scenario",
+        help="the scenario of a recorded lift, to predict it",
+        description="Write the scenario of a recorded lift: the person, where the hand starts and ends, and how long "
+        "it takes. A robot, which cannot shape the motion, stands for the other hand and bears the other half.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("recorded", metavar="FOLDER", help="that liftopt mocap wrote")
+    parser.add_argument("--object-mass", type=float, metavar="KG", required=True, help="of all that is lifted")
+    parser.add_argument("--lift", type=int, metavar="N", help="which lift, from 1, where the recording has several")
+    parser.add_argument("--out", metavar="FILE", required=True, help="TOML file to write; it must not exist")
+    parser.set_defaults(run=run)
+
+
+def scenario_text(args: argparse.Namespace) -> str:
+    """Do what the command line says and return what it prints.
+
+    Raises:
+        InputError: the folder holds no recorded lift with an object, or the file exists.
+    """
+    from liftopt.files.new_file import write_new
+    from liftopt.lab.mocap.recorded_file import load_recorded
+    from liftopt.lab.mocap.recorded_scenario import recorded_scenario
+    from liftopt.scenario.model import scenario_to_toml
+
+    lift = load_recorded(args.recorded)
+    if args.lift is not None:
+        lift = lift.of_lift(args.lift)
+    scenario = recorded_scenario(lift, args.object_mass)
+    head = f"# Made from {' '.join(lift.source.split())}; what stands for what: liftopt/lab/recorded_scenario.py.\n"
+    write_new("--out", Path(args.out), head + scenario_to_toml(scenario))
+    start, end = scenario.task.start, scenario.task.end
+    return (
+        f"{scenario.table.mass:g} kg from {start.height:g} to {end.height:g} m in {scenario.duration:g} s, "
+        f"the hand {start.human_distance:g} to {end.human_distance:g} m ahead of the feet\nWritten to {args.out}\n"
+    )

@@ -1,0 +1,172 @@
+"""``liftopt sensitivity``: what a lift depends on, as a table, JSON or a plot."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from liftopt.errors import InputError, LiftoptError
+from liftopt.files.atomic_file import write_whole
+from liftopt.scenario.model import Scenario, load_scenario, scenario_to_dict, with_overrides
+from liftopt.viz import FORMATS
+
+if TYPE_CHECKING:
+    from liftopt.search.cache import Workshop
+    from liftopt.search.candidate import Plan
+    from liftopt.studies.sensitivity import Sensitivity, Study
+
+SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
+
+
+def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
+    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+    parser = commands.add_parser(
+        "sensitivity",
+        help="what effort, peak torques and load share depend on",
+        description="Solve a scenario, or that of a result anew, and again with stature, masses, heights, distances "
+        "and duration a little changed up and down; everybody re-plans. The changes are as large as what they do stays "
+        "in proportion.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "scenario",
+        nargs="?",
+        metavar="SCENARIO",
+        help="a TOML file, a result folder, or a scenario that is shipped (default: table5)",
+    )
+    parser.add_argument(
+        "--set", action="append", default=[], dest="overrides", metavar="KEY=VALUE", help="as with solve"
+    )
+    parser.add_argument("--json", action="store_true", help="print all slopes as one JSON object")
+    parser.add_argument("--plot", metavar="FILE", help="write a figure: .svg, .png or .pdf")
+    parser.set_defaults(run=run)
+
+
+def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = None) -> str:
+    """Do what the command line says and return what it prints.
+
+    Raises:
+        InputError: the scenario or an option is wrong, or the plot cannot be written.
+        LiftoptError: the scenario has no verified solution.
+    """
+    plot = None if args.plot is None else Path(args.plot)
+    if plot is not None and plot.suffix[1:] not in FORMATS:
+        raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
+    scenario = load_scenario(args.scenario, args.overrides)
+    from liftopt.studies.sensitivity import study
+
+    plan, workshop = _sharp_plan(scenario, say)
+    found = study(plan, workshop, say=say)
+    if plot is not None:
+        _write_plot(found, plot)
+    if args.json:
+        return json.dumps(study_dict(found), allow_nan=False) + "\n"
+    return table(found) + ("" if plot is None else f"Written to {plot}\n")
+
+
+def study_dict(study: Study) -> dict[str, Any]:
+    """Return a study ready for JSON: slopes in the figures' units over the parameter's."""
+    return {
+        "scenario": scenario_to_dict(study.plan.scenario),
+        "figures": study.figures,
+        "busiest": list(study.busiest),
+        "parameters": [
+            {
+                "name": s.parameter.name,
+                "keys": list(s.parameter.keys),
+                "unit": s.parameter.unit,
+                "value": s.value,
+                "change": s.change,
+                "slopes": s.slopes,
+                "objective_by_envelope": s.envelope,
+                "reliable": s.is_reliable,
+                "doubt": s.doubt or None,
+                "not_larger_because": s.beyond or None,
+            }
+            for s in study.sensitivities
+        ],
+        "left_out": [{"name": parameter.name, "why": why} for parameter, why in study.left_out],
+    }
+
+
+def _sharp_plan(scenario: Scenario, say: Callable[[str], None] | None) -> tuple[Plan, Workshop]:
+    """Return the best plan, polished as far as the solver goes, and the workshop it comes from."""
+    from liftopt.control.replanning import Replanner
+    from liftopt.search.cache import Workshop
+
+    workshop = Workshop()
+    replanner = Replanner(say, workshop)
+    solution = replanner.solve(scenario)
+    plan = replanner.latest
+    if plan is None:
+        raise LiftoptError(f"no verified solution to differentiate: {solution.status}")
+    sharp = min(SHARP, scenario.solver.tolerance)
+    polished = replanner.replan(with_overrides(scenario, [f"solver.tolerance={sharp!r}"]))
+    return (plan if polished is None or not polished.solved else polished), workshop
+
+
+def _write_plot(study: Study, path: Path) -> None:
+    from matplotlib import rc_context
+
+    from liftopt.viz.plots import rendered
+    from liftopt.viz.plots_sensitivity import sensitivity_figure
+    from liftopt.viz.plots_style import STYLE
+
+    with rc_context(STYLE):
+        figure = sensitivity_figure(study)
+    write_whole("--plot", path, rendered(figure, path.suffix[1:]))
+
+
+def table(study: Study) -> str:
+    """Return the table that the command prints."""
+    human, robot = study.plan.problem.team.agents
+    now, busiest = study.figures, study.busiest
+    joints = [name.partition("_")[2] for name in busiest]
+    lines = [
+        f"{study.plan.scenario.name}: J = {now['objective']:.5g}, effort of the person "
+        f"{now[f'effort {human.name}']:.4g}, of the robot {now[f'effort {robot.name}']:.4g} N2 m2 s; the person bears",
+        f"{100 * now[f'share {human.name}']:.1f} %. Nearest to their limits: "
+        + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in busiest)
+        + ".",
+        "",
+        f"{'':17} {'':>12} {'':>7} {'effort':>15} {'':>6} {'torque used':>15}",
+        f"{'if this':17} {'':>12} {'J':>7} {'person':>7} {'robot':>7} {'load':>6} {joints[0]:>7} {joints[1]:>7} "
+        f"{'J':>7}",
+        f"{'changes':17} {'by':>12} {'%':>7} {'%':>7} {'%':>7} {'%':>6} {'%':>7} {'%':>7} {'%/+1%':>7}",
+    ]
+    for s in sorted(study.sensitivities, key=lambda s: -abs(s.slopes["objective"] * s.change)):
+        relative = {name: 100 * s.slopes[name] / now[name] for name in now}
+        efforts = [s.change * relative[f"effort {agent.name}"] for agent in (human, robot)]
+        used = [100 * s.change * s.slopes[f"used {name}"] for name in busiest]
+        lines.append(
+            f"{s.parameter.name:17} {_change(s):>10}{'' if s.is_reliable else ' !':2} "
+            f"{s.change * relative['objective']:+7.2f} {efforts[0]:+7.2f} {efforts[1]:+7.2f} "
+            f"{100 * s.change * s.slopes[f'share {human.name}']:+6.2f} {used[0]:+7.2f} {used[1]:+7.2f} "
+            f"{relative['objective'] * s.value / 100:+7.2f}"
+        )
+    return "\n".join([*lines, *_remarks(study)]) + "\n"
+
+
+def _remarks(study: Study) -> list[str]:
+    """Return the lines below the table: what it says, and where it cannot be relied on."""
+    lines = [
+        "",
+        "Everybody re-plans, following the motion found. Half the change does half as much, and less the opposite of",
+        "more; J, efforts in percent of now; load that the person bears and share of the torque limit in points.",
+    ]
+    if doubted := [s for s in study.sensitivities if not s.is_reliable]:
+        lines += ["", "! not so here, a trend at best:"]
+        lines += [f"  {s.parameter.name} {_change(s)}: {s.doubt}" for s in doubted]
+    if shorter := [s for s in study.sensitivities if s.is_reliable and s.beyond]:
+        lines += ["", "Shown for a smaller change than usual, as a larger one is not in proportion:"]
+        lines += [f"  {s.parameter.name} {s.parameter.change:g} {s.parameter.unit}: {s.beyond}" for s in shorter]
+    if study.left_out:
+        lines.append("")
+    return lines + [f"{parameter.name} is left out: {why}" for parameter, why in study.left_out]
+
+
+def _change(s: Sensitivity) -> str:
+    return f"+{s.change:.3g} {s.parameter.unit}"

@@ -1,0 +1,1 @@
+"""A lift that is solved anew while it runs."""

@@ -1,0 +1,105 @@
+"""Planning a lift again and again, for a controller or a study, while what is lifted and by whom changes little.
+
+Kernels, solvers and the last optimum with its multipliers are kept. A scenario that changes numbers only - masses,
+heights, stature, where they stand, duration, weights - is solved from there in a few Newton steps::
+
+    replanner = Replanner()
+    solution = replanner.solve(scenario)  # the first from scratch: best of several starts, verified
+    heavier = with_overrides(scenario, ["table.mass=2.2"])
+    plan = replanner.replan(heavier)  # a few milliseconds; None if that did not converge
+    now = plan.at([0.3])  # q, v, a, torques and grasp forces at 0.3 s
+    plan.solved  # verified by Pinocchio when it is asked
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from liftopt.assessment.assess import assessed
+from liftopt.collocation.codegen.kernels import Say
+from liftopt.scenario.build import motions_of
+from liftopt.scenario.model import Scenario
+from liftopt.search.cache import Workshop
+from liftopt.search.candidate import Plan
+from liftopt.search.mesh_refinement import estimate
+from liftopt.search.solve import Search
+from liftopt.solution.solution import Solution, StartRecord
+
+WARM = "last optimum"
+
+
+class Replanner:
+    """Plans one scenario after the other, each from the optimum of the one before; for one thread.
+
+    A warm solve follows one local optimum as the scenario changes. Where a better one has appeared elsewhere, only
+    ``lift`` or ``solve(..., cold=True)`` finds it. The solver is the scenario's: ``solver.name=banded`` is the one that
+    is fast from a warm start.
+
+    Attributes:
+        latest: the plan that the next one starts from, None before the first.
+    """
+
+    def __init__(self, progress: Say | None = None, workshop: Workshop | None = None) -> None:
+        """Start without a plan.
+
+        Args:
+            progress: hears one line at a time of what is going on.
+            workshop: that others use too; None: one of its own.
+        """
+        self.latest: Plan | None = None
+        self._workshop = workshop or Workshop()
+        self._say = progress or (lambda line: None)
+
+    def solve(self, scenario: Scenario, *, cold: bool = False) -> Solution:
+        """Return the verified solution of a scenario, or why there is none in its ``status``, as ``lift`` does.
+
+        Args:
+            scenario: what to lift.
+            cold: solve from several starts even if there is an optimum to start from.
+
+        Raises:
+            InputError: a value of the scenario cannot be used.
+            SolverError: the solver cannot run at all.
+        """
+        began = time.monotonic()
+        plan = None if cold else self.replan(scenario)
+        if plan is not None and plan.solved:
+            result, now = plan.result, time.monotonic()
+            record = StartRecord(plan.start, "converged", result.objective, result.iterations, result.seconds)
+            solution = plan.solution([record], {"setup": 0.0, "total": now - began})
+            late = began + scenario.solver.time_limit
+            return assessed(replace(solution, accuracy=estimate(self._workshop, plan, late, self._say)))
+        search = Search(scenario, self._workshop, motions_of(scenario), self._say)
+        best = search.sharpened(search.best())
+        if best.solved:
+            self.latest = best
+        return assessed(search.solution(best))
+
+    def replan(self, scenario: Scenario) -> Plan | None:
+        """Return the plan of a changed scenario from the latest one, as fast as it can be had and not yet verified.
+
+        Ask ``solved`` of it before it is believed: that verifies. The plan becomes the latest.
+
+        Returns:
+            None where there is no plan to start from, where the scenario has another structure (``solver.intervals``,
+            ``task.rest``, a tool or none) or where the solver did not converge: then ``solve`` searches anew.
+
+        Raises:
+            InputError: a value of the scenario cannot be used.
+            SolverError: the solver cannot run at all.
+        """
+        last = self.latest
+        if last is None or motions_of(last.scenario) != motions_of(scenario):
+            return None
+        self._say("solving from the last optimum")
+        problem = self._workshop.problem(scenario, last.spline, self._say)
+        if not problem.same_structure(last.problem):
+            return None
+        solver = self._workshop.solver(problem, scenario, scenario.solver.name, self._say)
+        deadline = time.monotonic() + scenario.solver.time_limit
+        result = solver.solve(last.result.x, deadline=deadline, warm=last.result.multipliers, problem=problem)
+        if not result.converged:
+            return None
+        self.latest = Plan(scenario, problem, last.spline, WARM, result)
+        return self.latest

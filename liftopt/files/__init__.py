@@ -1,0 +1,1 @@
+"""Files in general: written whole, read within bounds, and what every reader and writer of text shares."""

@@ -1,0 +1,1 @@
+"""The experiment beside the prediction."""

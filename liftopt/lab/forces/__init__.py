@@ -1,0 +1,1 @@
+"""The force of a hand: sensors, their calibration and their records."""

@@ -1,0 +1,1 @@
+"""Motion capture: files of markers and what they say of a person."""

@@ -1,0 +1,93 @@
+"""A robot's trajectory as files: bags for ROS 1, ROS 2 and MCAP, CSV and JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Literal
+
+from liftopt.lab.robot.bags import Record, write_bag
+from liftopt.lab.robot.joint_trajectory import JointTrajectory
+from liftopt.lab.robot.ros_messages import SECOND, TRAJECTORY, RosMessages
+
+Format = Literal["ros1", "ros2", "mcap", "csv", "json"]
+NAME = "trajectory"
+GOAL_TOPIC = "/robot/limb/right/follow_joint_trajectory/goal"  # the action server listens here
+TRAJECTORY_TOPIC = "/liftopt/joint_trajectory"  # nobody does here
+
+
+def write_trajectory(
+    trajectory: JointTrajectory, folder: Path, formats: Iterable[Format], goal_time: float
+) -> list[Path]:
+    """Write a trajectory in each of ``formats`` and return the files, and folders of ROS 2.
+
+    Args:
+        trajectory: to write.
+        folder: to write into; it exists and is empty.
+        formats: which.
+        goal_time: of the goal, see ``RosMessages.goal`` [s].
+
+    Raises:
+        InputError: ``rosbags`` is needed and not installed.
+        OSError: a file cannot be written.
+    """
+    return [_write(trajectory, folder, kind, goal_time) for kind in dict.fromkeys(formats)]
+
+
+def csv_text(trajectory: JointTrajectory) -> str:
+    """Return one line a point: time [s], positions [rad], velocities [rad/s], accelerations [rad/s^2].
+
+    The columns ``time,right_j0,...,right_j6`` come first: the manufacturer's joint_trajectory_file_playback.py takes
+    those by name and leaves the others. Numbers are written so that they are read back without loss.
+    """
+    kinds = ("", "velocity_", "acceleration_")
+    lines = [",".join(["time", *(kind + name for kind in kinds for name in trajectory.names)])]
+    for k, time in enumerate(trajectory.time):
+        rows = (trajectory.position[k], trajectory.velocity[k], trajectory.acceleration[k])
+        lines.append(",".join(repr(float(x)) for x in (time, *(x for row in rows for x in row))))
+    return "\n".join(lines) + "\n"
+
+
+def json_text(trajectory: JointTrajectory, goal_time: float) -> str:
+    """Return a control_msgs/FollowJointTrajectoryGoal of ROS 1 as rosbridge writes messages."""
+    points = [
+        {
+            "positions": trajectory.position[k].tolist(),
+            "velocities": trajectory.velocity[k].tolist(),
+            "accelerations": trajectory.acceleration[k].tolist(),
+            "effort": [],
+            "time_from_start": _span(at),
+        }
+        for k, at in enumerate(trajectory.nanoseconds)
+    ]
+    header = {"seq": 0, "stamp": _span(0), "frame_id": ""}
+    goal = {
+        "trajectory": {"header": header, "joint_names": list(trajectory.names), "points": points},
+        "path_tolerance": [],
+        "goal_tolerance": [],
+        "goal_time_tolerance": _span(round(goal_time * SECOND)),
+    }
+    return json.dumps(goal, indent=1, allow_nan=False) + "\n"
+
+
+def goal_records(messages: RosMessages, trajectory: JointTrajectory, goal_time: float, stamp: int) -> Iterator[Record]:
+    """Yield the trajectory and the goal that asks for it as they arrive at ``stamp`` [ns]."""
+    kind, goal = messages.goal(trajectory, goal_time)
+    yield Record(TRAJECTORY_TOPIC, TRAJECTORY, stamp, messages.trajectory(trajectory))
+    yield Record(GOAL_TOPIC, kind, stamp, goal)
+
+
+def _write(trajectory: JointTrajectory, folder: Path, kind: Format, goal_time: float) -> Path:
+    if kind == "csv" or kind == "json":
+        path = folder / f"{NAME}.{kind}"
+        text = csv_text(trajectory) if kind == "csv" else json_text(trajectory, goal_time)
+        path.write_text(text, encoding="utf-8", newline="\n")
+        return path
+    messages = RosMessages.of(ros1=kind == "ros1")
+    # A bag must not begin at time 0, which ROS takes for "no time".
+    return write_bag(folder / NAME, kind, messages, goal_records(messages, trajectory, goal_time, SECOND))
+
+
+def _span(nanoseconds: int) -> dict[str, int]:
+    return {"secs": nanoseconds // SECOND, "nsecs": nanoseconds % SECOND}

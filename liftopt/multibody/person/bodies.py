@@ -1,0 +1,76 @@
+"""The bodies that the joints of Table 2 move: de Leva's segments of the upright subject, lumped."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from liftopt.multibody.dh import Array, BodyInertia
+from liftopt.multibody.person.anthropometry import (
+    HEEL_BEHIND_ANKLE,
+    HIP_JOINT_SPREAD,
+    dimension,
+    landmarks,
+    link_lengths,
+)
+from liftopt.multibody.person.segments import SEGMENTS, hanging_segment, standing_foot
+from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.sources import DE_LEVA_ON_ANSUR, Source
+
+BODY_SOURCE: Source = DE_LEVA_ON_ANSUR
+RIGHT, LEFT = -1.0, 1.0
+
+
+def human_bodies(subject: Subject) -> dict[str, BodyInertia]:
+    """Return the bodies that carry the subject's whole mass, by the DH row that moves them.
+
+    Frame: the upright zero pose in world axes, feet at the origin, X forward, Y to the left, Z up. The pelvis and
+    both legs stand on GT3 and do not move; the trunk with head and the passive left arm, which hangs, follows Q3.
+    """
+    arm = _arm(subject, RIGHT)
+    return {
+        "GT3": _lower_body(subject),
+        "Q3": _trunk(subject),
+        "Q6": arm["upper_arm"],
+        "Q8": arm["forearm"],
+        "Q10": arm["hand"],
+    }
+
+
+def _lower_body(subject: Subject) -> BodyInertia:
+    at = landmarks(subject)
+    body = hanging_segment(subject, "lower_trunk", _axis(at.omphalion), at.omphalion - at.hip)
+    foot_length = dimension(subject, "footlength")
+    for side in (LEFT, RIGHT):
+        y = side * HIP_JOINT_SPREAD * dimension(subject, "hipbreadth")
+        heel = np.array([-HEEL_BEHIND_ANKLE * foot_length, y, at.ankle / 2.0])
+        body += hanging_segment(subject, "thigh", np.array([0.0, y, at.hip]), at.hip - at.knee)
+        body += hanging_segment(subject, "shank", np.array([0.0, y, at.knee]), at.knee - at.ankle)
+        body += standing_foot(subject, heel, foot_length)
+    return body
+
+
+def _trunk(subject: Subject) -> BodyInertia:
+    at = landmarks(subject)
+    head_length = SEGMENTS[subject.sex]["head"].length * subject.stature
+    body = hanging_segment(subject, "middle_trunk", _axis(at.xiphion), at.xiphion - at.omphalion)
+    body += hanging_segment(subject, "upper_trunk", _axis(at.suprasternale), at.suprasternale - at.xiphion)
+    body += hanging_segment(subject, "head", _axis(at.vertex), head_length)
+    for part in _arm(subject, LEFT).values():
+        body += part
+    return body
+
+
+def _arm(subject: Subject, side: float) -> dict[str, BodyInertia]:
+    lengths = link_lengths(subject)
+    shoulder = np.array([0.0, side * lengths.l3, lengths.l1 + lengths.l2])
+    elbow = shoulder - _axis(lengths.l4)
+    wrist = elbow - _axis(lengths.l5)
+    return {
+        "upper_arm": hanging_segment(subject, "upper_arm", shoulder, lengths.l4),
+        "forearm": hanging_segment(subject, "forearm", elbow, lengths.l5),
+        "hand": hanging_segment(subject, "hand", wrist, lengths.l6),
+    }
+
+
+def _axis(height: float) -> Array:
+    return np.array([0.0, 0.0, height])

@@ -1,0 +1,130 @@
+"""The human: a 13-DOF right arm on spine and feet (Table 2) for one subject, as a URDF and an agent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import radians
+
+import numpy as np
+
+from liftopt.multibody.agent import Agent, HalfSpace, JointLimits
+from liftopt.multibody.dh import (
+    ROTATION_WORLD_PAPER,
+    Array,
+    BodyInertia,
+    DHChain,
+    frame_transforms,
+    human_rows,
+)
+from liftopt.multibody.person.anthropometry import link_lengths
+from liftopt.multibody.person.bodies import human_bodies
+from liftopt.multibody.person.human_shapes import human_shapes
+from liftopt.multibody.person.range_of_motion import RANGES
+from liftopt.multibody.person.strength import torque_limit
+from liftopt.multibody.person.subject import Sex, Subject
+from liftopt.multibody.shapes import Shape
+from liftopt.multibody.urdf import (
+    HELD,
+    FixedLink,
+    JointBounds,
+    chain_robot,
+    joint_name,
+    link_placements,
+    load_model,
+    shapes_on_links,
+    urdf_text,
+)
+
+__all__ = ["Subject", "human_agent", "human_chain", "human_limits", "human_root"]
+
+NAME, GRASP = "human", "human_grasp"
+VIRTUAL = ("GT1", "GT2", "GT3")
+# Orientation in the world of the hand that holds an edge from below: palm up (the grasp frame's z), fingers ahead (-x),
+# thumb to the right (y). Within reach at both ends of Table 5 for statures from 1.6 to 1.9 m.
+HAND_UNDER_EDGE = np.diag([-1.0, -1.0, 1.0])
+# Forearm level and half pronated, the hand about 0.43 m ahead at elbow height: the middle of a lift at the waist.
+POSTURE_DEG = {"Q5": 15.0, "Q7": -75.0, "Q8": -80.0}
+
+
+def human_root() -> Array:
+    """Return T_world_root (4, 4): the paper's frame at the feet, in the world."""
+    root = np.eye(4)
+    root[:3, :3] = ROTATION_WORLD_PAPER
+    return root
+
+
+def human_chain(subject: Subject) -> DHChain:
+    """Return Table 2 for ``subject``, the inertia of each body in its row's DH frame.
+
+    The bodies add up to the whole body mass: the pelvis and the legs are on GT3, so that the forces of the three
+    virtual joints are the ground reaction.
+    """
+    lengths = link_lengths(subject)
+    rows = human_rows(lengths.l1, lengths.l2, lengths.l3, lengths.l4, lengths.l5, lengths.l6)
+    bodies = human_bodies(subject)
+    massless = DHChain(NAME, rows, tuple(BodyInertia.zero() for _ in rows))
+    frames = frame_transforms(massless, np.zeros(len(rows)))
+    inertias = []
+    for row, frame in zip(rows, frames, strict=True):
+        world_frame = human_root() @ frame
+        rotation = world_frame[:3, :3].T
+        body = bodies.get(row.name, BodyInertia.zero())
+        inertias.append(body.transformed(rotation, -rotation @ world_frame[:3, 3]).rounded())
+    return DHChain(NAME, rows, tuple(inertias))
+
+
+def human_limits(sex: Sex) -> JointLimits:
+    """Return ranges of motion, speeds and strength of Q1 to Q10, arrays (10,), for a man or a woman."""
+    return JointLimits(
+        q_lower=np.array([radians(item.lower) for item in RANGES]),
+        q_upper=np.array([radians(item.upper) for item in RANGES]),
+        velocity=np.array([item.velocity for item in RANGES]),
+        tau_lower=np.array([torque_limit(item.joint, -1, sex) for item in RANGES]),
+        tau_upper=np.array([torque_limit(item.joint, +1, sex) for item in RANGES]),
+    )
+
+
+def human_agent(subject: Subject, urdf: str | None = None) -> Agent:
+    """Return the subject as an agent: feet at the world origin, facing +X, holding at ``human_grasp``.
+
+    The grasp point must stay in front of the base of the spine (eq. 14), which stands at X = 0.
+
+    Args:
+        subject: who it is.
+        urdf: the subject's URDF if it was written before; None writes it.
+    """
+    limits, text = human_limits(subject.sex), urdf or human_urdf(subject)
+    return Agent(
+        name=NAME,
+        urdf=text,
+        model=load_model(text),
+        pinned=tuple(joint_name(NAME, row) for row in VIRTUAL),
+        grasp_frame=GRASP,
+        limits=limits,
+        posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
+        keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.0),
+    )
+
+
+def human_urdf(subject: Subject) -> str:
+    """Return the subject's URDF."""
+    chain, limits = human_chain(subject), human_limits(subject.sex)
+    bounds = dict.fromkeys(VIRTUAL, HELD) | joint_bounds((item.joint for item in RANGES), limits)
+    return chain_urdf(chain, bounds, placed_shapes(chain, subject))
+
+
+def joint_bounds(rows: Iterable[str], limits: JointLimits) -> dict[str, JointBounds]:
+    """Return limits as URDF has them, by row of the chain; its one effort is that of the stronger direction."""
+    columns = zip(rows, limits.q_lower, limits.q_upper, limits.effort, limits.velocity, strict=True)
+    return {row: JointBounds(*map(float, values)) for row, *values in columns}
+
+
+def placed_shapes(chain: DHChain, subject: Subject) -> dict[str, tuple[Shape, ...]]:
+    """Return the subject's shapes in the frames of the links of ``chain``, the subject's own."""
+    return shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
+
+
+def chain_urdf(chain: DHChain, bounds: dict[str, JointBounds], shapes: dict[str, tuple[Shape, ...]]) -> str:
+    """Return the URDF of a chain with the rows of Table 2, bounds and shapes by row."""
+    root = FixedLink("human_base", "world", human_root())
+    return urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=GRASP))

@@ -1,0 +1,1 @@
+"""What is asked: who lifts what, from where to where, how fast."""

@@ -1,0 +1,98 @@
+"""What outlives a lift: models, kernels and solvers, used again by the next lift as far as they fit it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, TypeVar
+
+from liftopt.collocation.codegen.kernels import Say
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.banded_nlp import wide_kernels
+from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
+from liftopt.collocation.solvers.result import Solver
+from liftopt.collocation.spline import Mesh, RestToRestSpline
+from liftopt.scenario.build import human_of, object_of, robot_of, task_of
+from liftopt.scenario.model import Scenario
+from liftopt.search.postures import PostureSolver
+
+T = TypeVar("T")
+# Of the objective inside IPOPT: from twelve starts of a lift 26 iterations in the median, with 0.1 they were 30.
+LIFT_SCALING = 0.03
+
+
+class Workshop:
+    """Builds what a lift needs, or hands out what it built before; for one thread.
+
+    A new subject, tool, object, task or duration keeps kernels and solvers; another number of intervals or another
+    scale of a constraint (the limits on torque and grasp force are shares of it) makes new ones.
+    """
+
+    def __init__(self) -> None:
+        """Start with nothing."""
+        self._models: dict[str, tuple[Hashable, Any]] = {}
+        self._team: Team | None = None
+        self._postures: PostureSolver | None = None
+        self._meshes: dict[RestToRestSpline, Mesh] = {}
+        self._problems: dict[RestToRestSpline, tuple[Scenario, Problem]] = {}
+        self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
+
+    def problem(self, scenario: Scenario, spline: RestToRestSpline, say: Say | None = None) -> Problem:
+        """Return the lift of a scenario on a mesh; ``say`` hears of it when kernels must be compiled first."""
+        robot = (scenario.robot, scenario.task.standing_distance)
+        agents = (
+            self._kept("human", scenario.human, lambda: human_of(scenario)),
+            self._kept("robot", robot, lambda: robot_of(scenario)),
+        )
+        held = self._kept("table", scenario.table, lambda: object_of(scenario))
+        team = self._team
+        if team is None or any(
+            new is not old for new, old in zip((*agents, held), (*team.agents, team.held), strict=True)
+        ):
+            team = self._team = Team.of(agents, held, say, like=team)
+        if spline not in self._meshes:
+            self._meshes[spline] = spline.mesh()
+        known = self._problems.get(spline)
+        if known is None or known[0] != scenario or known[1].team is not team:
+            known = scenario, Problem(team, task_of(scenario), self._meshes[spline])
+            self._problems[spline] = known
+        return known[1]
+
+    def solver(
+        self,
+        problem: Problem,
+        scenario: Scenario,
+        name: str,
+        say: Say | None = None,
+        worker: int = 0,
+        rough: float = 0.0,
+    ) -> Solver:
+        """Return the solver ``name`` for a problem; each ``worker`` has one of its own, ``rough`` as ``BandedOptions``.
+
+        Raises:
+            SolverError: it cannot be set up.
+        """
+        tolerance = scenario.solver.tolerance
+        key = (name, worker, tolerance, rough, len(problem.mesh.phase))
+        kept = self._solvers.get(key)
+        if kept is None or not problem.interchangeable(kept[0]):
+            made: Solver
+            if name == "banded":
+                made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), say)
+            else:
+                options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)
+                made = Ipopt(problem, options, wide_kernels(problem, say))
+            kept = self._solvers[key] = (problem, made)
+        return kept[1]
+
+    def postures(self, problem: Problem, scenario: Scenario, say: Say | None = None) -> PostureSolver:
+        """Return the solver of static postures for a lift; ``say`` hears of it when kernels must be compiled first."""
+        workers = scenario.solver.workers
+        self._postures = PostureSolver(problem.team, problem.task, say, like=self._postures, workers=workers)
+        return self._postures
+
+    def _kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
+        if name not in self._models or self._models[name][0] != key:
+            self._models[name] = (key, make())
+        model: T = self._models[name][1]
+        return model

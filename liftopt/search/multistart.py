@@ -1,0 +1,107 @@
+"""Many starts of one problem, one after the other or several at a time, and those that come of their results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.parallel_map import abreast
+from liftopt.collocation.solvers.result import Solver, SolverResult
+from liftopt.search.initial_guess import Start, recombined, turned
+from liftopt.search.postures import rounded
+
+
+def solve_all(
+    solvers: Sequence[Solver],
+    starts: Sequence[Start],
+    deadline: float,
+    problem: Problem | None = None,
+    margin: float = 1.0,
+    most: int | None = None,
+) -> Iterator[SolverResult]:
+    """Solve from every start; yield the results in the order of the starts, whatever the number of solvers.
+
+    What the first leads to, which should be the most promising, is the rival of the others: these may be given up. That
+    of whichever was best so far would save 1 % more iterations, but depend on how many solve at a time. A start that
+    joins no known moves, the naive one, has no rival: far from feasible for long, its objective tells nothing.
+
+    Args:
+        solvers: one for each thread; with several they must let go of Python's lock at work.
+        starts: where to start.
+        deadline: ``time.monotonic`` value past which solvers stop.
+        problem: what is solved; None: what each solver was built for.
+        margin: how many times the rival's objective is still of interest.
+        most: iterations of each; None: as many as its solver takes.
+
+    Raises:
+        SolverError: a solver cannot run at all.
+    """
+    first, *others = starts
+    (leader,) = solve_each(solvers[:1], [(first, None)], deadline, problem, most)
+    yield leader
+    rival = replace(leader, objective=margin * leader.objective)
+    rivalled = [(start, rival if start.moves else None) for start in others]
+    yield from solve_each(solvers, rivalled, deadline, problem, most)
+
+
+def solve_each(
+    solvers: Sequence[Solver],
+    starts: Sequence[tuple[Start, SolverResult | None]],
+    deadline: float,
+    problem: Problem | None = None,
+    most: int | None = None,
+) -> Iterator[SolverResult]:
+    """Solve from every start, each with the rival it has, if any; yield the results in their order.
+
+    Args:
+        solvers: one for each thread, as for ``solve_all``.
+        starts: where to start, and what is to be beaten.
+        deadline: ``time.monotonic`` value past which solvers stop.
+        problem: what is solved; None: what each solver was built for.
+        most: iterations of each; None: as many as its solver takes.
+
+    Raises:
+        SolverError: a solver cannot run at all.
+    """
+
+    def job(start: Start, rival: SolverResult | None) -> Callable[[Solver], SolverResult]:
+        def solve(solver: Solver) -> SolverResult:
+            return solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=rival, most=most)
+
+        return solve
+
+    return abreast(solvers, [job(*start) for start in starts])
+
+
+def follow_up(
+    solver: Solver, starts: Sequence[Start], results: Sequence[SolverResult], deadline: float, problem: Problem
+) -> Iterator[tuple[Start, SolverResult]]:
+    """Solve from the starts that come of others' results, and yield each with its result.
+
+    First from the best moves of all agents together, then from the best optimum with joints turned back that press
+    against a limit. The best optimum so far is the rival.
+
+    Args:
+        solver: for the problem.
+        starts: what was solved from.
+        results: where each of them led.
+        deadline: ``time.monotonic`` value past which solvers stop.
+        problem: what is solved.
+    """
+
+    def together(best: SolverResult) -> Start | None:
+        return recombined(problem, starts, results)
+
+    def back(best: SolverResult) -> Start | None:
+        return turned(problem, best.x)
+
+    optima = [result for result in results if result.converged]
+    for make in (together, back):
+        if not optima:
+            return
+        best = min(optima, key=lambda result: result.objective)
+        if (start := make(best)) is not None:
+            result = solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=best)
+            optima += [result] if result.converged else []
+            yield start, result

@@ -1,0 +1,44 @@
+"""The shipped models' kernels compiled into a folder when a wheel is built.
+
+The command is ``python -m liftopt.search.ship_kernels FOLDER``.
+
+A kernel is parametric in subject, tool and object, so these few serve every scenario. Installed with the package they
+save a user the wait at the first solve, and the need for a compiler.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from liftopt.collocation.codegen.simd_kernels import load_wide
+from liftopt.collocation.problem import Team, kernel_requests
+from liftopt.scenario.build import agents_of, object_of
+from liftopt.scenario.model import GRASPS, load_scenario
+
+
+def ship(folder: str) -> bool:
+    """Compile the kernels into a folder and return whether all are there."""
+    os.environ["LIFTOPT_CACHE"] = folder
+    whole = True
+    for grasp in GRASPS:
+        scenario = load_scenario(overrides=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
+        team = Team.of(agents_of(scenario), object_of(scenario), _say)
+        wide = load_wide(kernel_requests(team.agents, team.held), _say)
+        whole = whole and wide is not None and all(kernel.compiled for kernel in team.kernels)
+    return whole
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command; its exit status is 1 where a kernel is missing."""
+    (folder,) = arguments
+    return 0 if ship(folder) else 1
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

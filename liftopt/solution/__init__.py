@@ -1,0 +1,1 @@
+"""What was found: the solution of a lift, its verification and its accuracy."""

@@ -1,0 +1,278 @@
+"""What an ergonomist and a robot engineer ask of a solution, as plain numbers ready for JSON.
+
+Units stand in the key names (``_Nm``, ``_s``, ``_deg``); shares are fractions. A number that does not exist (the
+load share of a body in free fall, the objective of a start that failed) is None.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.scenario.model import scenario_to_dict
+from liftopt.solution.interpolation import between_knots
+from liftopt.storage.result_folder import FILES
+
+if TYPE_CHECKING:
+    from liftopt.multibody.trajectory import AgentTrajectory
+    from liftopt.solution.solution import Solution
+
+Array = npt.NDArray[np.float64]
+
+GRAVITY = 9.81  # m/s^2, as in the models
+FREE_FALL = 1e-3  # N; below this the vertical load is too small to be shared out
+
+# The motion named is the positive direction of the joint, except where (-) says otherwise; right arm.
+HUMAN_JOINTS = {
+    "Q1": "trunk bend right",
+    "Q2": "trunk flexion",
+    "Q3": "trunk turn left",
+    "Q4": "shoulder adduction",
+    "Q5": "shoulder flexion",
+    "Q6": "shoulder int. rotation",
+    "Q7": "elbow flexion (-)",
+    "Q8": "forearm supination",
+    "Q9": "wrist extension",
+    "Q10": "wrist ulnar deviation",
+}
+# The manufacturer's joint names; the sign is that of its angle where Table 3's is Q.
+SAWYER_JOINTS = {
+    "Q1": "right_j0",
+    "Q2": "right_j1",
+    "Q3": "right_j2",
+    "Q4": "-right_j3",
+    "Q5": "right_j4",
+    "Q6": "right_j5",
+    "Q7": "right_j6",
+}
+TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
+
+
+def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
+    """Return the figures that sum up a solution; every number in it is finite or None.
+
+    Peaks are taken between the knots too; of what is no solution, at the knots.
+
+    Args:
+        solution: solved or not.
+        out: folder that it was written to, if any.
+    """
+    solved = bool(solution.solved)
+    fine = between_knots(solution) if solved else solution
+    return {
+        "name": solution.scenario.name,
+        "status": solution.status,
+        "solved": solved,
+        "exit_status": 0 if solved else 3,
+        "reason": None if solved else solution.status,
+        "reasons": [asdict(reason) for reason in solution.reasons],
+        "remedies": [asdict(remedy) for remedy in solution.remedies],
+        "assessment": solution.assessment.plain(),
+        "out": None if out is None else str(out),
+        "files": [] if out is None else [str(out / name) for name in FILES],
+        "scenario": scenario_to_dict(solution.scenario),
+        "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
+        "load_share": load_share(solution),
+        "grasp_force": _grasp_force(fine),
+        "grasp_moment": _grasp_moment(fine),
+        "ground_reaction": _ground_reaction(fine),
+        "objective": _objective(solution),
+        "solver": {
+            "intervals": int(solution.intervals),
+            "iterations": int(solution.iterations),
+            "seconds": {key: _number(value) for key, value in solution.seconds.items()},
+            "starts": [
+                {
+                    "name": start.name,
+                    "kept": start.name == solution.kept_start,
+                    "status": start.status,
+                    "objective": _number(start.objective),
+                    "iterations": int(start.iterations),
+                    "seconds": _number(start.seconds),
+                }
+                for start in solution.starts
+            ],
+        },
+        "verification": _verification(solution),
+        "accuracy": _accuracy(solution),
+        "notes": list(solution.notes),
+    }
+
+
+def load_share(solution: Solution) -> dict[str, Any]:
+    """Return who carries how much of the vertical grasp force: at every knot, and its range, for each agent."""
+    return {
+        "time_s": _numbers(solution.time),
+        "agents": {
+            agent.name: {"share": _numbers(share), **_range(share)}
+            for agent, share in zip(solution.agents, shares(solution.agents), strict=True)
+        },
+    }
+
+
+def shares(agents: Sequence[AgentTrajectory]) -> Array:
+    """Return each agent's part (agents, K) of the vertical grasp force; NaN where there is no load to share."""
+    vertical = np.stack([agent.grasp_force[:, 2] for agent in agents])
+    load = vertical.sum(axis=0)
+    part = np.full_like(vertical, np.nan)
+    np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
+    return part
+
+
+def limit_share(agent: AgentTrajectory) -> Array:
+    """Return the torques (K, moving joints) of an agent as fractions of the limits in their directions."""
+    tau = agent.tau[:, agent.moving]
+    return np.where(tau >= 0.0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
+
+
+def squeeze(agents: Sequence[AgentTrajectory]) -> Array:
+    """Return the part (K,) of the forces of two agents along the line of their hands that cancels [N].
+
+    Positive presses the object together.
+    """
+    first, second = agents
+    line = second.grasp_position - first.grasp_position
+    line = line / np.linalg.norm(line, axis=1, keepdims=True)
+    return np.asarray(0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line))
+
+
+def joint_meaning(agent: str, robot_model: str, joint: str) -> str:
+    """Return what a joint is to its user: anatomy for the human, the manufacturer's name for the robot."""
+    if agent == "human":
+        return HUMAN_JOINTS.get(joint, "")
+    return SAWYER_JOINTS.get(joint, "") if (agent, robot_model) == ("robot", "sawyer") else ""
+
+
+def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
+    moving = np.flatnonzero(agent.moving)
+    tau = agent.tau[:, moving]
+    share = limit_share(agent)
+    rows = []
+    for column, index in enumerate(moving):
+        joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
+        at, worst = int(np.argmax(np.abs(tau[:, column]))), int(np.argmax(share[:, column]))
+        q = np.degrees(agent.q[:, index])
+        rows.append(
+            {
+                "joint": joint,
+                "meaning": joint_meaning(agent.name, solution.scenario.robot.model, joint),
+                "peak_torque_Nm": _number(tau[at, column]),
+                "peak_torque_at_s": _number(solution.time[at]),
+                "share_of_limit": _number(share[at, column]),
+                "largest_share_of_limit": _number(share[worst, column]),
+                "largest_share_at_s": _number(solution.time[worst]),
+                "q_min_deg": _number(q.min()),
+                "q_max_deg": _number(q.max()),
+            }
+        )
+    return rows
+
+
+def _grasp_force(solution: Solution) -> dict[str, Any]:
+    result: dict[str, Any] = {"limit_N": solution.scenario.limits.max_grasp_force, "agents": {}}
+    for agent in solution.agents:
+        result["agents"][agent.name] = _peak(np.linalg.norm(agent.grasp_force, axis=1), solution.time, "N")
+    if len(solution.agents) == 2:
+        result["squeeze"] = _peak(squeeze(solution.agents), solution.time, "N")
+    return result
+
+
+def _grasp_moment(solution: Solution) -> dict[str, Any]:
+    """Return the peak moment of each agent whose grasp transmits one, and its limit."""
+    return {
+        agent.name: _peak(np.linalg.norm(agent.grasp_moment, axis=1), solution.time, "Nm")
+        | {"limit_Nm": _number(agent.grasp.max_moment)}
+        for agent in solution.agents
+        if agent.grasp.moments
+    }
+
+
+def _ground_reaction(solution: Solution) -> dict[str, Any]:
+    force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
+    vertical = _peak(force[:, 2], solution.time, "N")
+    weight = solution.scenario.human.mass * GRAVITY
+    return {
+        "vertical": vertical,
+        "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,
+        "horizontal": _peak(np.linalg.norm(force[:, :2], axis=1), solution.time, "N"),
+        "moment": _peak(np.linalg.norm(moment, axis=1), solution.time, "Nm"),
+        "moment_lateral": _peak(moment[:, 0], solution.time, "Nm"),
+        "moment_sagittal": _peak(moment[:, 1], solution.time, "Nm"),
+        "moment_vertical": _peak(moment[:, 2], solution.time, "Nm"),
+    }
+
+
+def _objective(solution: Solution) -> dict[str, Any]:
+    terms = {}
+    for name, integral in solution.objective_terms.items():
+        weight = solution.objective_weights[name]
+        terms[name] = {
+            "integral": _number(integral),
+            "unit": TERM_UNITS.get(name, ""),
+            "weight": _number(weight),
+            "weighted": _number(weight * integral),
+        }
+    return {"total": _number(solution.objective), "terms": terms}
+
+
+def _verification(solution: Solution) -> dict[str, Any]:
+    verification = solution.verification
+    return {
+        "passed": bool(verification.passed),
+        "kkt_error": _number(verification.kkt_error),
+        "kkt_tolerance": solution.scenario.solver.tolerance,
+        "checks": [
+            {
+                "name": check.name,
+                "value": _number(check.value),
+                "limit": _number(check.limit),
+                "unit": check.unit,
+                "where": check.where,
+                "passed": bool(check.passed),
+            }
+            for check in verification.checks
+        ],
+    }
+
+
+def _accuracy(solution: Solution) -> dict[str, Any] | None:
+    accuracy = solution.accuracy
+    if accuracy is None:
+        return None
+    return {
+        "closure_m": _number(accuracy.closure),
+        "balance_SI": _number(accuracy.balance),
+        "torque_excess_Nm": _number(accuracy.torque_excess),
+        "objective_limit": _number(accuracy.objective_limit),
+        "objective_error": _number(accuracy.objective_error),
+        "objective_bar": _number(accuracy.objective_bar),
+        "compared_intervals": accuracy.intervals or None,
+        "remark": accuracy.remark,
+    }
+
+
+def _peak(values: Array, time: Array, unit: str) -> dict[str, Any]:
+    at = int(np.argmax(np.abs(values)))
+    return {f"peak_{unit}": _number(values[at]), "at_s": _number(time[at])}
+
+
+def _range(values: Array) -> dict[str, Any]:
+    finite = values[np.isfinite(values)]
+    return {
+        "min": _number(finite.min()) if finite.size else None,
+        "max": _number(finite.max()) if finite.size else None,
+    }
+
+
+def _numbers(values: Array) -> list[float | None]:
+    return [_number(value) for value in values]
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,157 @@
+"""Is it a solution? Every requirement measured on the exported models by Pinocchio, not by the solver's functions."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.constraints import BALANCE_ROWS, served_rows
+from liftopt.collocation.flat_hand import flat_hand_rows
+from liftopt.collocation.kkt import kkt_error
+from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.result import SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.multibody.trajectory import angle_between, attitude, turned
+from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, Check, Verification
+
+Array = npt.NDArray[np.float64]
+CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
+AT_ENDS = 1e-9
+OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
+
+
+def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tolerance: float) -> Verification:
+    """Measure every requirement on a solver's result.
+
+    Args:
+        problem: what was solved.
+        spline: its space of motions.
+        result: where the solver stopped.
+        tolerance: largest KKT error.
+    """
+    fine = motion_at(problem, spline, result.x, np.linspace(0.0, 1.0, FINER * spline.intervals + 1))
+    knots = fine.every(FINER)
+    optimality = kkt_error(problem, result.x, result.multipliers)
+    checks = [
+        _closure("closure at the knots", knots, AT_KNOTS, problem.mesh.closure_knots),
+        _closure("closure between knots", fine, CLOSURE_BETWEEN_KNOTS, np.arange(len(fine.time))),
+        *_balance(problem, knots, fine),
+        *_limits(problem, knots, AT_KNOTS, ""),
+        *_limits(problem, fine, np.inf, BETWEEN_KNOTS),
+        *_ends(problem, spline, knots),
+        _objective(problem, knots, result),
+    ]
+    return Verification(tuple(checks), optimality.error, tolerance)
+
+
+def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64]) -> Check:
+    """Eq. 16: distance of each agent's grasp point from the object's."""
+    gaps = [
+        np.linalg.norm(agent.grasp_position - motion.held.grasp_position[:, i], axis=1)[at]
+        for i, agent in enumerate(motion.agents)
+    ]
+    return _worst(name, np.stack(gaps, axis=1), limit, "m", [agent.name for agent in motion.agents], motion.time[at])
+
+
+def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
+    """Eq. 17 on the rows that the grasps serve; the other one, and all between knots, are reported."""
+    tolerance, team = problem.task.balance_tolerance, problem.team
+    served = served_rows(team.agents, team.held, tolerance)
+    moments = any(grasp.moments for grasp in team.grasps)
+    other = None if moments else team.held.unserved_row()
+    labels = [f"{knots.held.name} {row}" for row in BALANCE_ROWS]
+    pick = [labels[r] for r in served]
+    excess = np.maximum(np.abs(knots.held.wrench[:, served]) - tolerance, 0.0)
+    between = np.abs(fine.held.wrench[:, served])
+    checks = [
+        _worst("balance at the knots", excess, AT_KNOTS, "SI", pick, knots.time),
+        _worst("balance between knots", between, np.inf, "SI", pick, fine.time),
+    ]
+    if other is not None:
+        unserved = np.abs(fine.held.wrench[:, [other]])
+        checks.append(_worst("unserved moment", unserved, np.inf, "Nm", [labels[other]], fine.time))
+    return checks
+
+
+def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list[Check]:
+    """Eqs. 11, 12, 14, 15 and the limits on speed and grasp force: how far each is exceeded."""
+    task, held, names = problem.task, motion.held, [f"{motion.held.name} {c}" for c in OBJECT_COORDINATES]
+    position, speed, torque, force = [], [], [], []
+    for agent in motion.agents:
+        q, v, tau = (values[:, agent.moving] for values in (agent.q, agent.v, agent.tau))
+        bounds = agent.limits
+        position.append(np.maximum(bounds.q_lower - q, q - bounds.q_upper))
+        speed.append(np.abs(v) - bounds.velocity)
+        torque.append(np.maximum(bounds.tau_lower - tau, tau - bounds.tau_upper))
+        force.append(np.linalg.norm(agent.grasp_force, axis=1) - task.max_grasp_force)
+    joints = [name for agent in motion.agents for name in agent.moving_joints]
+    position.append(np.maximum(task.pose_lower - held.pose, held.pose - task.pose_upper))
+    speed.append(np.abs(held.pose_velocity) - task.pose_velocity)
+    agents = [agent.name for agent in motion.agents]
+    checks = [
+        _worst("position limits", np.hstack(position), limit, "SI", joints + names, motion.time),
+        _worst("speed limits", np.hstack(speed), limit, "SI", joints + names, motion.time),
+        _worst("torque limits", np.hstack(torque), limit, "Nm", joints, motion.time),
+        _worst("grasp force cap", np.stack(force, axis=1), limit, "N", agents, motion.time),
+    ]
+    for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):
+        if model.keep_in is not None:
+            short = model.keep_in.offset - trajectory.grasp_position @ model.keep_in.normal
+            checks.append(_worst("grasp in front", short[:, None], limit, "m", [model.name], motion.time))
+    checks += _holds(motion, limit)
+    # np.maximum lets a NaN through where max would hide it.
+    return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
+
+
+def _holds(motion: Motion, limit: float) -> list[Check]:
+    """What holds that transmit more than a force at a point keep to: moment, angle on the object, friction."""
+    checks, rotation = [], attitude(motion.held.pose[:, 3:])[0]
+    for agent in motion.agents:
+        grasp, own = agent.grasp, [agent.name]
+        if grasp.moments:
+            excess = np.linalg.norm(agent.grasp_moment, axis=1) - grasp.max_moment
+            checks.append(_worst("grasp moment cap", excess[:, None], limit, "Nm", own, motion.time))
+            angle = angle_between(rotation, agent.grip_rotation) - grasp.max_turn
+            checks.append(_worst("hand on the object", angle[:, None], limit, "rad", own, motion.time))
+        back = rotation.swapaxes(1, 2)
+        local = np.hstack([turned(back, agent.grasp_force), turned(back, agent.grasp_moment)])
+        for rows in flat_hand_rows(grasp):
+            worst, unit = -rows.room(local), "N" if rows.name == "friction" else "Nm"
+            ways = [f"{agent.name} {label}" for label in rows.labels]
+            checks.append(_worst(f"{rows.name} of the hand", worst, limit, unit, ways, motion.time))
+    return checks
+
+
+def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Check]:
+    """Eqs. 18 and 19: rest at both ends as asked, the object's pose where the task fixes it."""
+    ends, task, held = [0, -1], problem.task, motion.held
+    labels = [name for agent in motion.agents for name in agent.joint_names]
+    labels += [f"{held.name} {c}" for c in OBJECT_COORDINATES]
+    speed = np.hstack([*(agent.v[ends] for agent in motion.agents), held.pose_velocity[ends]])
+    acceleration = np.hstack([*(agent.a[ends] for agent in motion.agents), held.pose_acceleration[ends]])
+    still = AT_ENDS if spline.rest == "acceleration" else np.inf
+    wanted = np.stack([task.start, task.end])
+    off = np.where(np.isnan(wanted), 0.0, np.abs(held.pose[ends] - wanted))
+    time = motion.time[ends]
+    return [
+        _worst("speed at the ends", np.abs(speed), AT_ENDS, "SI", labels, time),
+        _worst("acceleration at the ends", np.abs(acceleration), still, "SI", labels, time),
+        _worst("pose at the ends", off, AT_KNOTS, "SI", labels[-len(OBJECT_COORDINATES) :], time),
+    ]
+
+
+def _objective(problem: Problem, motion: Motion, result: SolverResult) -> Check:
+    """The solver's objective against Pinocchio's torques: would show a wrong kernel."""
+    terms, weights = objective_terms(motion), objective_weights(problem)
+    ours = sum(weights[name] * value for name, value in terms.items())
+    error = abs(ours - result.objective) / max(1.0, abs(ours))
+    return Check("objective by Pinocchio", error, OBJECTIVE, "relative", "")
+
+
+def _worst(name: str, values: Array, limit: float, unit: str, labels: list[str], time: Array) -> Check:
+    """Return the check of the largest entry of ``values`` (times, labels); a NaN is the largest."""
+    flat = np.where(np.isnan(values), np.inf, values)
+    k, j = np.unravel_index(int(np.argmax(flat)), flat.shape)
+    return Check(name, float(values[k, j]), limit, unit, f"{labels[j]} at {time[k]:.2f} s")

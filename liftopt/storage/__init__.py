@@ -1,0 +1,1 @@
+"""Results in files, in and out: whole or not at all, and read with care where they come from elsewhere."""

@@ -1,0 +1,151 @@
+"""A solution read back from disk: the folder that ``liftopt solve`` wrote, or its solution.nc."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.assessment.assess import assessed
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.likeness import difference
+from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
+from liftopt.scenario.build import agents_of, object_of
+from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.solution.checks import Verification
+from liftopt.solution.solution import Solution
+from liftopt.storage.netcdf_file import read_netcdf
+from liftopt.storage.record import read_assessment, read_record
+from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, URDF_FILES, locked, standing_result
+from liftopt.storage.result_path import no_result, result_file
+from liftopt.storage.urdf_check import read_model
+
+Array = npt.NDArray[np.float64]
+MOST_KNOTS = 10_000
+LARGEST_VALUE = 1e12  # in SI units; the worst iterate of a solver that failed is far below
+SAME_TIME = 1e-6  # of the duration
+
+
+def load_result(path: str | Path) -> Solution:
+    """Return the solution in a result folder; its ``solution.nc`` and its ``scenario.toml`` stand for it too.
+
+    Trajectories come from solution.nc, the models' limits from scenario.toml beside it. Nothing is written, and the
+    files are taken for what anybody may have made of them; see ``netcdf_file`` and ``model_file``.
+
+    Raises:
+        InputError: a file is missing, is no result of liftopt, is damaged, or is a model of another robot or person
+            than the scenario's; it says which and why.
+    """
+    path = Path(path)
+    file = result_file(path)
+    with suppress(OSError, ValueError):  # too long a name, a NUL: reading it says so
+        if file.parent.is_file():
+            raise no_result(path)
+    with locked(file.parent, to_write=False):
+        folder = standing_result(file.parent) if file.name == NETCDF else file.parent
+        try:
+            data, attributes = read_netcdf(folder / file.name)
+        except FileNotFoundError:
+            raise no_result(path) from None
+        if not (folder / SCENARIO).exists():
+            raise InputError(str(folder / SCENARIO), NO_VALUE, "no such file; a result has one beside its solution.nc")
+        scenario = load_scenario(folder / SCENARIO)
+        urdfs = {name: read_model(folder / MODELS / name) for name in URDF_FILES.values()}
+    try:
+        agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
+        _check_models(scenario, agents, held, folder / MODELS)
+        return _solution(scenario, urdfs, agents, held, data, attributes)
+    except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
+        why = f"{type(error).__name__}: {error}"
+        raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
+
+
+def _check_models(scenario: Scenario, agents: tuple[Agent, ...], held: LiftedObject, folder: Path) -> None:
+    """Raise InputError if the models of a result are not those of its scenario; small numbers may differ."""
+    built, table = agents_of(scenario), object_of(scenario)
+    given: tuple[Agent | LiftedObject, ...] = (*agents, held)
+    expected: tuple[Agent | LiftedObject, ...] = (*built, table)
+    frames = [*((agent.grasp_frame,) for agent in built), table.grasp_frames]
+    for one, other, names in zip(given, expected, frames, strict=True):
+        if found := difference(one.model, other.model, names):
+            raise InputError(
+                str(folder / URDF_FILES[other.name]),
+                NO_VALUE,
+                f"is not the {other.name} of {SCENARIO} beside it: {found}; copy a result whole, or solve again",
+            )
+
+
+def _solution(
+    scenario: Scenario,
+    urdfs: dict[str, str],
+    agents: tuple[Agent, ...],
+    held: LiftedObject,
+    data: dict[str, Array],
+    attributes: dict[str, Any],
+) -> Solution:
+    record = read_record(str(attributes["record"]))
+    time, knots, intervals = data["time"], np.size(data["time"]), int(attributes["intervals"])
+    if knots != intervals + 1 or knots > MOST_KNOTS:
+        raise ValueError(f"time has {knots} values on {intervals} intervals")
+    time = _array(data, "time", (knots,))
+    if not (np.diff(time) > 0.0).all():
+        raise ValueError("time does not increase")
+    if not np.allclose(time[[0, -1]], (0.0, scenario.duration), rtol=0.0, atol=SAME_TIME * scenario.duration):
+        raise ValueError(f"it lasts from {time[0]:g} to {time[-1]:g} s, the scenario beside it {scenario.duration:g} s")
+    forces = _array(data, "grasp_force", (knots, len(agents), 3))
+    # Files from before there were moments have none.
+    moments = _array(data, "grasp_moment", forces.shape) if "grasp_moment" in data else np.zeros_like(forces)
+    solution = Solution(
+        scenario=scenario,
+        outcome=record.outcome,
+        time=time,
+        agents=tuple(_agent(agent, data, forces[:, i], moments[:, i]) for i, agent in enumerate(agents)),
+        held=_object(held, data, forces.reshape(knots, -1), moments),
+        urdfs=urdfs,
+        objective=float(attributes["objective"]),
+        objective_terms={name: float(attributes[f"objective_{name}"]) for name in record.objective_weights},
+        objective_weights=record.objective_weights,
+        iterations=int(attributes["iterations"]),
+        intervals=intervals,
+        seconds=record.seconds,
+        starts=record.starts,
+        kept_start=record.kept_start,
+        verification=Verification(record.checks, float(attributes["kkt_error"]), record.kkt_tolerance),
+        notes=record.notes,
+        accuracy=record.accuracy,
+        reasons=record.reasons,
+        remedies=record.remedies,
+    )
+    if "assessment" not in attributes:  # as files from before there was one
+        return assessed(solution)
+    return replace(solution, assessment=read_assessment(str(attributes["assessment"])))
+
+
+def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:
+    shape = (len(force), agent.model.nv)
+    q, v, a, tau = (_array(data, f"{agent.name}_{kind}", shape) for kind in ("q", "v", "a", "tau"))
+    moving = [name not in agent.pinned for name in list(agent.model.names)[1:]]
+    # What follows from the motion and the forces is computed again rather than stored.
+    return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force, moment), tau=tau)
+
+
+def _object(held: LiftedObject, data: dict[str, Any], forces: Array, moments: Array) -> ObjectTrajectory:
+    kinds = ("", "_velocity", "_acceleration")
+    pose, rate, second = (_array(data, f"{held.name}_pose{kind}", (len(forces), 6)) for kind in kinds)
+    return object_trajectory(held, pose, rate, second, forces, moments)
+
+
+def _array(data: dict[str, Any], name: str, shape: tuple[int, ...]) -> Array:
+    values = np.asarray(data[name], dtype=float)
+    if values.shape != shape:
+        raise ValueError(f"{name} has shape {values.shape}, expected {shape}")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{name} holds values that are not finite")
+    if np.abs(values).max(initial=0.0) > LARGEST_VALUE:
+        raise ValueError(f"{name} holds values beyond {LARGEST_VALUE:g}")
+    return values

@@ -1,0 +1,1 @@
+"""Several lifts: what an answer hinges on, and what it trades."""

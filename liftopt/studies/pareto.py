@@ -1,0 +1,193 @@
+"""The Pareto front of human against robot effort: what the one gains where the other works more.
+
+Every point is an optimum of the scenario with other weights of the two efforts, their sum kept. The search starts
+anew at both ends and in the middle of the range, follows each of these optima through all weights by warm solves, and
+then goes over the whole range in both directions as long as a neighbour's motion leads to something better. What the
+weights of acceleration and force add to the objective, and local optima, may leave a point that another one beats in
+both efforts: such points are dropped.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from liftopt.collocation.motion import objective_terms
+from liftopt.control.replanning import Replanner
+from liftopt.errors import InputError
+from liftopt.scenario.model import Objective, Scenario
+from liftopt.search.candidate import Plan
+from liftopt.solution.summary import shares
+
+Say = Callable[[str], None]
+DECADES = 4.0  # that the ratio of the weights runs over
+# Where a warm solve across a step in weights fails, it is tried in two halves, this often.
+HALVINGS = 2
+ROUNDS = 3  # over the whole range and back, at most
+BETTER = 1e-6  # relative gain of the objective that counts
+FEWEST, MOST = 2, 200
+
+
+@dataclass(frozen=True)
+class Point:
+    """One compromise.
+
+    Attributes:
+        weights: of the person's and the robot's squared torques.
+        efforts: the person's and the robot's integral of squared torques [N^2 m^2 s].
+        share: mean part of the vertical grasp force that the person carries.
+        plan: the lift, verified.
+    """
+
+    weights: tuple[float, float]
+    efforts: tuple[float, float]
+    share: float
+    plan: Plan
+
+
+@dataclass(frozen=True)
+class Front:
+    """What can be had.
+
+    Attributes:
+        scenario: whose.
+        points: that no other point beats in both efforts, the person's effort rising.
+        dominated: those that one does.
+        missing: weights of person and robot for which no verified solution was found.
+    """
+
+    scenario: Scenario
+    points: tuple[Point, ...]
+    dominated: tuple[Point, ...]
+    missing: tuple[tuple[float, float], ...]
+
+
+def pareto_front(scenario: Scenario, count: int = 11, say: Say | None = None) -> Front:
+    """Return the front of a scenario from ``count`` ratios of the weights, evenly spaced in their logarithm.
+
+    Raises:
+        InputError: ``count`` is out of range, or the scenario weighs neither effort.
+        SolverError: the solver cannot run at all.
+    """
+    if not FEWEST <= count <= MOST:
+        raise InputError("--points", count, f"must be a whole number from {FEWEST} to {MOST}")
+    total = scenario.objective.human_weight + scenario.objective.robot_weight
+    if total == 0:
+        raise InputError("objective.human_weight", 0.0, "one of human_weight and robot_weight must be above 0")
+    logs = np.linspace(DECADES / 2, -DECADES / 2, count).tolist()  # of human over robot
+    walk = _Walk(scenario, total, logs, Replanner(say), say or (lambda line: None))
+    plans = walk.best()
+    points = [_point(plan) for plan in plans if plan is not None and plan.solved]
+    missing = [weights_at(total, log) for log, p in zip(logs, plans, strict=True) if p is None or not p.solved]
+    dominated = [point for point in points if any(_beats(other, point) for other in points)]
+    kept = sorted((point for point in points if point not in dominated), key=lambda point: point.efforts)
+    return Front(scenario, tuple(kept), tuple(dominated), tuple(missing))
+
+
+def weights_at(total: float, log: float) -> tuple[float, float]:
+    """Return the weights of person and robot whose ratio has this logarithm to base 10."""
+    human = total / (1 + 10**-log)
+    return human, total - human
+
+
+class _Walk:
+    """The best plan so far for every ratio, and the ways between them."""
+
+    def __init__(self, scenario: Scenario, total: float, logs: Sequence[float], replanner: Replanner, say: Say) -> None:
+        self.scenario, self.total, self.logs, self.replanner, self.say = scenario, total, logs, replanner, say
+        self.plans: list[Plan | None] = [None] * len(logs)
+
+    def best(self) -> list[Plan | None]:
+        """Return the best plan found for each ratio."""
+        last = len(self.logs) - 1
+        for i in sorted({0, last // 2, last}):
+            if (found := self._search(i)) is not None:
+                self._keep(i, found)
+                for path in (range(i, last), range(i, 0, -1)):
+                    self._follow(found, path, 1 if path.step > 0 else -1)
+        for _ in range(ROUNDS):
+            if not (self._polish(range(last), 1) + self._polish(range(last, 0, -1), -1)):
+                break
+        return self.plans
+
+    def _search(self, i: int) -> Plan | None:
+        """Return the best of several starts at one ratio."""
+        self.say(f"searching at weights {ratio_text(weights_at(self.total, self.logs[i]))}")
+        self.replanner.latest = None
+        self.replanner.solve(self._scenario(self.logs[i]), cold=True)
+        found, options = self.replanner.latest, self.scenario.solver
+        if found is None or found.spline.intervals == options.intervals:
+            return found
+        # It took a finer mesh, and objectives compare on one mesh only: all begin again there.
+        finer, enough = replace(options, intervals=found.spline.intervals), replace(self.scenario.refine, on=False)
+        self.scenario = replace(self.scenario, solver=finer, refine=enough)
+        self.plans = [None] * len(self.plans)
+        return self._search(i)
+
+    def _follow(self, plan: Plan, path: range, step: int) -> None:
+        """Take one optimum along through the weights, whatever else is known there."""
+        for i in path:
+            there = self._warm(plan, self.logs[i], self.logs[i + step])
+            if there is None:
+                return
+            self._keep(i + step, there)
+            plan = there
+
+    def _polish(self, path: range, step: int) -> int:
+        """Start every solve from its best neighbour; return how many it made better."""
+        gained = 0
+        for i in path:
+            plan = self.plans[i]
+            there = None if plan is None else self._warm(plan, self.logs[i], self.logs[i + step])
+            gained += there is not None and self._keep(i + step, there)
+        return gained
+
+    def _warm(self, plan: Plan, log: float, onto: float, halvings: int = HALVINGS) -> Plan | None:
+        self.say(f"following an optimum to weights {ratio_text(weights_at(self.total, onto))}")
+        self.replanner.latest = plan
+        there = self.replanner.replan(self._scenario(onto))
+        if there is not None or halvings == 0:
+            return there
+        middle = (log + onto) / 2
+        between = self._warm(plan, log, middle, halvings - 1)
+        return None if between is None else self._warm(between, middle, onto, halvings - 1)
+
+    def _keep(self, i: int, plan: Plan) -> bool:
+        known = self.plans[i]
+        if known is not None and plan.result.objective > (1 - BETTER) * known.result.objective:
+            return False
+        if not plan.solved:
+            return False
+        self.plans[i] = plan
+        return True
+
+    def _scenario(self, log: float) -> Scenario:
+        human, robot = weights_at(self.total, log)
+        objective: Objective = replace(self.scenario.objective, human_weight=human, robot_weight=robot)
+        return replace(self.scenario, objective=objective)
+
+
+def _point(plan: Plan) -> Point:
+    motion = plan.at(plan.spline.phase * plan.problem.task.duration)
+    terms, objective = objective_terms(motion), plan.scenario.objective
+    human, robot = motion.agents
+    share = float(np.nanmean(shares(motion.agents)[0]))
+    efforts = (terms[human.name], terms[robot.name])
+    return Point((objective.human_weight, objective.robot_weight), efforts, share, plan)
+
+
+def _beats(one: Point, other: Point) -> bool:
+    """Whether a point is better than another in one effort and no worse in the other."""
+    no_worse = all(a <= b for a, b in zip(one.efforts, other.efforts, strict=True))
+    return no_worse and not all(map(math.isclose, one.efforts, other.efforts))
+
+
+def ratio_text(weights: tuple[float, float]) -> str:
+    """Return the ratio of two weights, not both 0, as everybody tells it: ``"1 : 100"``, ``"2.51 : 1"``."""
+    human, robot = weights
+    if not human or not robot:
+        return "1 : 0" if human else "0 : 1"
+    return f"{human / robot:.3g} : 1" if human >= robot else f"1 : {robot / human:.3g}"

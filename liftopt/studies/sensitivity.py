@@ -1,0 +1,289 @@
+"""What a solved lift depends on: what happens to effort, joints and load share as the scenario changes a little.
+
+Each parameter is changed up and down and the lift is solved again, from its optimum: everybody re-plans. Slopes are
+central differences. Their step is the change that a reader thinks in, if half of it gives the same slopes and up and
+down do as much; else it is halved until that is so. What limits say at the optimum itself is no such measure: at a
+knot one becomes active or ceases to be within a millimetre of nearly any change, and next to nothing comes of it.
+
+The optimum's own derivative (``collocation.parametric``) tells how far the motion should move. A lift solved again
+that lies elsewhere is another optimum, and no slope joins the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
+from liftopt.collocation.parametric import Optimum, Tangent
+from liftopt.control.replanning import Replanner
+from liftopt.errors import InputError
+from liftopt.scenario.model import Scenario, scenario_to_dict, with_overrides
+from liftopt.search.cache import Workshop
+from liftopt.search.candidate import Plan
+from liftopt.solution.checks import FINER
+from liftopt.solution.summary import limit_share, shares
+
+Array = npt.NDArray[np.float64]
+# Of central differences of the problem itself, times the value: their error is its square.
+STEP = 1e-4
+SMALLEST = 0.1  # what counts as the value of a parameter that is smaller
+HALVINGS = 4  # of the change that a reader thinks in
+# Slopes of a step and of half of it agree to this share, what up and down do to the other; what is less than NOTHING,
+# as a share of the figure now or of the whole, is none at all.
+SAME, SYMMETRIC, NOTHING = 0.10, 0.25, 0.002
+# Another motion: further from the optimum by this [rad, m] than so many times what the tangent says.
+ELSEWHERE, FURTHER = 0.1, 3.0
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Something that a lift depends on.
+
+    Attributes:
+        name: in words.
+        keys: of the scenario; several move together.
+        change: that a reader thinks in, in ``unit``.
+        unit: SI unit of both.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    change: float
+    unit: str
+
+
+PARAMETERS = (
+    Parameter("stature", ("human.stature",), 0.01, "m"),
+    Parameter("body mass", ("human.mass",), 1.0, "kg"),
+    Parameter("object mass", ("table.mass",), 0.1, "kg"),
+    Parameter("object depth", ("table.depth",), 0.01, "m"),
+    Parameter("start height", ("task.start.height",), 0.01, "m"),
+    Parameter("end height", ("task.end.height",), 0.01, "m"),
+    Parameter("grasp from feet", ("task.start.human_distance", "task.end.human_distance"), 0.01, "m"),
+    Parameter("feet to robot", ("task.standing_distance",), 0.01, "m"),
+    Parameter("robot base height", ("robot.base_height",), 0.01, "m"),
+    Parameter("duration", ("duration",), 0.1, "s"),
+)
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """What one parameter does.
+
+    Attributes:
+        parameter: which.
+        value: of the scenario, in its unit; the first where several keys move together.
+        change: for which the slopes hold, up and down; at most the parameter's.
+        slopes: of each of ``Study.figures`` by the parameter, in the figure's unit over the parameter's.
+        envelope: derivative of the objective by the envelope theorem, found without solving again.
+        doubt: why the slopes are not to be relied on even for ``change``, in words; empty if they are.
+        beyond: why they do not hold for the parameter's whole change, in words; empty if they do.
+    """
+
+    parameter: Parameter
+    value: float
+    change: float
+    slopes: dict[str, float]
+    envelope: float
+    doubt: str = ""
+    beyond: str = ""
+
+    @property
+    def is_reliable(self) -> bool:
+        """Whether half the change does half as much, and down the opposite of up."""
+        return not self.doubt
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a lift depends on.
+
+    Attributes:
+        plan: the lift.
+        figures: their values: ``"objective"``, ``"effort <agent>"`` [N^2 m^2 s], ``"share <agent>"``, the mean part of
+            the vertical grasp force, ``"peak <joint>"`` [Nm], the size of a joint's largest torque, and
+            ``"used <joint>"``, its largest share of the limit in its direction; both between knots too.
+        busiest: joint of each agent that uses most of its limit.
+        sensitivities: one a parameter.
+        left_out: parameter and why, of those that the scenario does not let change.
+    """
+
+    plan: Plan
+    figures: dict[str, float]
+    busiest: tuple[str, ...]
+    sensitivities: tuple[Sensitivity, ...]
+    left_out: tuple[tuple[Parameter, str], ...]
+
+
+def study(
+    plan: Plan,
+    workshop: Workshop,
+    parameters: Sequence[Parameter] = PARAMETERS,
+    say: Callable[[str], None] | None = None,
+) -> Study:
+    """Return what a plan depends on.
+
+    Args:
+        plan: solved, to a tolerance far below what a change does.
+        workshop: that it comes from.
+        parameters: to look at.
+        say: hears one line at a time.
+
+    Raises:
+        SolverError: kernels cannot be had.
+    """
+    return _Differences(plan, workshop).study(parameters, say or (lambda line: None))
+
+
+def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario:
+    """Return the scenario with all keys of a parameter changed by as much.
+
+    Raises:
+        InputError: the change leads out of what a scenario may say.
+    """
+    values = {key: _value(scenario, key) for key in parameter.keys}
+    free = [key for key, value in values.items() if not isinstance(value, float)]
+    if free:
+        raise InputError(free[0], values[free[0]], "is no number that could change")
+    return with_overrides(scenario, [f"{key}={float(value + change)!r}" for key, value in values.items()])
+
+
+def figures(plan: Plan) -> dict[str, float]:
+    """Return ``Study.figures`` of a plan."""
+    problem, spline, x = plan.problem, plan.spline, plan.result.x
+    motion = motion_at(problem, spline, x, spline.phase)
+    terms, weights = objective_terms(motion), objective_weights(problem)
+    found = {"objective": sum(weights[name] * value for name, value in terms.items())}
+    for agent, share in zip(motion.agents, shares(motion.agents), strict=True):
+        found[f"effort {agent.name}"] = terms[agent.name]
+        found[f"share {agent.name}"] = float(np.nanmean(share))
+    fine = np.linspace(0.0, 1.0, FINER * spline.intervals + 1)
+    for agent in motion_at(problem, spline, x, fine).agents:
+        names = agent.moving_joints
+        torques, used = np.abs(agent.tau[:, agent.moving]).max(axis=0), limit_share(agent).max(axis=0)
+        found |= {f"peak {name}": float(torque) for name, torque in zip(names, torques, strict=True)}
+        found |= {f"used {name}": float(share) for name, share in zip(names, used, strict=True)}
+    return found
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """Figures of the lift with a parameter changed down and up."""
+
+    low: dict[str, float]
+    high: dict[str, float]
+
+
+class _Differences:
+    """Central differences around one plan."""
+
+    def __init__(self, plan: Plan, workshop: Workshop) -> None:
+        self.plan, self.workshop, self.replanner = plan, workshop, Replanner(workshop=workshop)
+        self.optimum = Optimum(plan.problem, plan.result.x, plan.result.multipliers)
+        self.now = figures(plan)
+        joints = [agent.moving_joints for agent in plan.problem.team.agents]
+        self.busiest = tuple(max(names, key=lambda name: self.now[f"used {name}"]) for names in joints)
+        # Judged: what the table tells. Of these the first change relative to what they are, the others as they are.
+        self.relative = [name for name in self.now if name.startswith(("objective", "effort"))]
+        carried = [name for name in self.now if name.startswith("share")]
+        self.told = [*self.relative, *carried, *(f"used {name}" for name in self.busiest)]
+
+    def study(self, parameters: Sequence[Parameter], say: Callable[[str], None]) -> Study:
+        """Return what the plan depends on."""
+        found, left_out = [], []
+        for parameter in parameters:
+            say(f"sensitivity to {parameter.name}")
+            value = _value(self.plan.scenario, parameter.keys[0])
+            if not isinstance(value, float):
+                left_out.append((parameter, f"{parameter.keys[0]} is {value}"))
+                continue
+            try:
+                found.append(self._sensitivity(parameter, value))
+            except InputError as error:
+                left_out.append((parameter, str(error)))
+        return Study(self.plan, self.now, self.busiest, tuple(found), tuple(left_out))
+
+    def _sensitivity(self, parameter: Parameter, value: float) -> Sensitivity:
+        tangent = self._tangent(parameter, value)
+        steps = [parameter.change / 2**i for i in range(HALVINGS + 2)]
+        tried: list[tuple[float, _Sides]] = []
+        first = refused = ""
+        for step in steps:
+            try:
+                sides: _Sides | str = self._sides(parameter, step, tangent)
+            except InputError as error:
+                sides = refused = str(error)
+            if isinstance(sides, str):  # nothing to compare: it is tried nearer
+                first, tried = first or sides, []
+                continue
+            if tried:
+                doubt = self._doubt(*tried[-1], sides, parameter, tangent)
+                if not doubt:
+                    return self._found(parameter, value, tangent, *tried[-1], beyond=first)
+                first = first or doubt
+            tried.append((step, sides))
+        if not tried:
+            raise InputError(parameter.keys[0], value, refused or first)
+        return self._found(parameter, value, tangent, *tried[0], doubt=first)
+
+    def _found(
+        self, parameter: Parameter, value: float, tangent: Tangent, step: float, sides: _Sides, **remarks: str
+    ) -> Sensitivity:
+        slopes = {name: (sides.high[name] - sides.low[name]) / (2 * step) for name in self.now}
+        return Sensitivity(parameter, value, step, slopes, tangent.objective, **remarks)
+
+    def _tangent(self, parameter: Parameter, value: float) -> Tangent:
+        step = STEP * max(abs(value), SMALLEST)
+        before, after = (
+            self.workshop.problem(changed(self.plan.scenario, parameter, change), self.plan.spline)
+            for change in (-step, step)
+        )
+        return self.optimum.tangent(before, after, step)
+
+    def _sides(self, parameter: Parameter, step: float, tangent: Tangent) -> _Sides | str:
+        """Return the figures of the lift solved again on both sides, or why they cannot be had."""
+        found, control = [], self.plan.problem.layout.control
+        for change in (-step, step):
+            self.replanner.latest = self.plan
+            plan = self.replanner.replan(changed(self.plan.scenario, parameter, change))
+            moved = 0.0 if plan is None else np.abs(plan.result.x - self.plan.result.x)[control].max()
+            if moved > ELSEWHERE + FURTHER * step * np.abs(tangent.x[control]).max():
+                return f"with {change:+g} {parameter.unit} the motion jumps to another optimum"
+            if plan is None or not plan.solved:
+                return f"with {change:+g} {parameter.unit} no verified lift is found from this one"
+            found.append(figures(plan))
+        return _Sides(*found)
+
+    def _doubt(self, step: float, sides: _Sides, halves: _Sides, parameter: Parameter, tangent: Tangent) -> str:
+        """Return why what a step does is not proportional to it, in words; empty if it is."""
+        worst, excess = "", 1.0
+        for name in self.told:
+            now = self.now[name]
+            up, down = sides.high[name] - now, sides.low[name] - now
+            whole, half = (up - down) / 2, halves.high[name] - halves.low[name]
+            least = NOTHING * (abs(now) if name in self.relative else 1.0)
+            bend = abs(up + down) / 2 / max(SYMMETRIC * abs(whole), least)
+            differs = abs(whole - half) / max(SAME * abs(whole), least)
+            if max(bend, differs) > excess:
+                excess = max(bend, differs)
+                scale = 100.0 / (abs(now) if name in self.relative else 1.0)
+                unit = "%" if name in self.relative else "points of percent"
+                if bend >= differs:
+                    worst = f"{name} {scale * up:+.2f} {unit} upwards, {scale * down:+.2f} downwards"
+                else:
+                    worst = f"{name} {scale * whole:+.2f} {unit} by all of it, {scale * half:+.2f} by twice half of it"
+        if worst and tangent.reach < step:
+            worst += f"; {tangent.limit} reaches or leaves its limit"
+        return worst
+
+
+def _value(scenario: Scenario, key: str) -> Any:
+    value: Any = scenario_to_dict(scenario)
+    for part in key.split("."):
+        value = value[part]
+    return value

@@ -1,0 +1,224 @@
+"""Mesh refinement; oracles: a second transcription's limit, Richardson on made-up figures, the fine mesh itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.ipopt import Ipopt
+from liftopt.collocation.solvers.result import BEATEN, SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.transfer import transfer, transfer_multipliers
+from liftopt.commands.cli import main
+from liftopt.control.replanning import Replanner
+from liftopt.scenario.model import Refine, load_scenario
+from liftopt.search.cache import Workshop
+from liftopt.search.candidate import Plan
+from liftopt.search.mesh_refinement import SAME_OPTIMUM, compared, distance, finer, neighbour, rivals, unmet
+from liftopt.search.solve import Search, lift
+from liftopt.solution.accuracy import Accuracy
+from liftopt.solution.solution import Solution
+from liftopt.solution.summary import summary_dict
+from liftopt.storage.reader import load_result
+from liftopt.storage.writer import save
+
+BANDED = ("solver.name=banded", "solver.starts=2")
+# Hermite-Simpson on the states without zero acceleration at the ends, on 20 intervals: crosscheck/transcriptions.py.
+LIMIT_OF_TABLE5 = 817.3
+
+
+@pytest.fixture(scope="module")
+def refined() -> Solution:
+    return lift(load_scenario("table5", [*BANDED, "refine.on=true"]))
+
+
+@pytest.fixture(scope="module")
+def coarse() -> Plan:
+    replanner = Replanner()
+    assert replanner.solve(load_scenario("table5", BANDED)).solved
+    assert replanner.latest is not None
+    return replanner.latest
+
+
+def test_refined_lift_meets_its_tolerances_and_the_second_transcriptions_limit(refined: Solution) -> None:
+    assert refined.solved
+    accuracy, wanted = refined.accuracy, refined.scenario.refine
+    assert accuracy is not None
+    assert unmet(accuracy, wanted) == ""
+    assert accuracy.objective_limit == pytest.approx(LIMIT_OF_TABLE5, rel=2e-3)
+    assert abs(accuracy.objective_limit - LIMIT_OF_TABLE5) <= accuracy.objective_bar
+    # What it says of the knots is what Pinocchio finds on a finer grid.
+    assert accuracy.closure == refined.verification.check("closure between knots").value
+    assert accuracy.balance == refined.verification.check("balance between knots").value
+    assert any(note.startswith(f"mesh refined from N = 20 to {refined.intervals}") for note in refined.notes)
+    assert [start.name for start in refined.starts].count(refined.kept_start) == 1
+
+
+def test_every_answer_carries_its_limit_with_a_bar_from_a_finer_mesh(coarse: Plan) -> None:
+    """From N = 20 and 40 the limit is within 0.5 % of the second transcription's, and within its own bar."""
+    solution = Replanner().solve(coarse.scenario)
+    accuracy = solution.accuracy
+    assert accuracy is not None
+    assert (solution.intervals, accuracy.intervals) == (20, 40)
+    assert accuracy.objective_limit == pytest.approx(LIMIT_OF_TABLE5, rel=5e-3)
+    assert abs(accuracy.objective_limit - LIMIT_OF_TABLE5) <= accuracy.objective_bar < 0.01 * LIMIT_OF_TABLE5
+    assert accuracy.objective_error == pytest.approx(solution.objective / accuracy.objective_limit - 1)
+    assert summary_dict(solution)["accuracy"]["objective_error"] == accuracy.objective_error
+
+
+def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Plan) -> None:
+    """Nested spline spaces: at every time and back again, to rounding."""
+    spline = RestToRestSpline(2 * coarse.spline.intervals)
+    problem = Workshop().problem(coarse.scenario, spline)
+    x = transfer(coarse.problem, coarse.spline, coarse.result.x, problem, spline)
+    phase = np.linspace(0.0, 1.0, 173)
+    before = coarse.spline.basis(phase) @ coarse.problem.unpack(coarse.result.x)[0]
+    np.testing.assert_allclose(spline.basis(phase) @ problem.unpack(x)[0], before, atol=1e-9)
+    back = transfer(problem, spline, x, coarse.problem, coarse.spline)
+    np.testing.assert_allclose(back, coarse.result.x, atol=1e-9)
+
+
+def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Plan) -> None:
+    """Against a rival of a tenth of its objective, and against none."""
+    told: list[tuple[str, str]] = []
+    rival = replace(coarse.result, objective=0.1 * coarse.result.objective)
+
+    def tell(name: str, result: SolverResult) -> None:
+        told.append((name, result.status))
+
+    given = (Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    assert neighbour(*given, rival=rival, told=tell) is None
+    there = neighbour(*given, told=tell)
+    assert there is not None
+    assert told == [(there.start, BEATEN), (there.start, there.result.status)]
+
+
+def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Plan) -> None:
+    """The oracle is a cold solve of the same motion beside a warm one."""
+    search = Search(coarse.scenario, Workshop(), RestToRestSpline(40), lambda line: None)
+    best = finer(search, [coarse, coarse], 40)
+    assert best is not None and best.solved
+    names = [record.name for record in search.records]
+    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh on 40, N = 40"]
+    assert best.origin is coarse and len(search.plans) == len({round(p.result.objective, 2) for p in search.plans})
+    x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
+    cold = search.solvers[0].solve(x, deadline=np.inf, problem=best.problem, rival=best.result)
+    warm = neighbour(Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    assert warm is not None and cold.iterations > 1.5 * warm.result.iterations
+    assert abs(search.records[2].iterations - cold.iterations) <= 2
+    led = [result.objective for result in (warm.result, cold) if result.converged]
+    assert best.result.objective == pytest.approx(min(led), rel=SAME_OPTIMUM)
+
+
+def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
+    coarse: Plan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """IPOPT is no help against a rival; from 20 intervals 80 are reached even if 40 fail."""
+    solve = Banded.solve
+
+    def fail_on_40(self: Banded, x0: Any, **given: Any) -> SolverResult:
+        result = solve(self, x0, **given)
+        fails = len(self.problem.mesh.phase) == 41
+        return replace(result, converged=False, status="Maximum_Iterations_Exceeded") if fails else result
+
+    def never(self: Ipopt, *_: Any, **__: Any) -> SolverResult:
+        raise AssertionError("IPOPT was asked")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Banded, "solve", fail_on_40)
+        patch.setattr(Ipopt, "solve", never)
+        rival = coarse.result
+        assert neighbour(Workshop(), coarse, 40, ("banded", "ipopt"), np.inf, lambda line: None, rival) is None
+    monkeypatch.setattr(Banded, "solve", fail_on_40)
+    monkeypatch.setattr(Ipopt, "solve", lambda self, x0, **_: replace(coarse.result, converged=False))
+    search = Search(replace(coarse.scenario), Workshop(), RestToRestSpline(80), lambda line: None)
+    best = finer(search, [coarse], 80)
+    assert best is not None and best.solved and best.origin is coarse
+
+
+def test_multipliers_keep_the_sum_over_time(coarse: Plan) -> None:
+    """A multiplier times what it stands for is the objective's change, whatever the mesh: equal sums, row by row."""
+    there = neighbour(Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    assert there is not None
+    assert distance(coarse, there) < 0.2
+    moved = transfer_multipliers(coarse.problem, coarse.result.multipliers, there.problem)
+    blocks = zip(coarse.problem.constraints.blocks, there.problem.constraints.blocks, strict=True)
+    for before, after in blocks:
+        n = len(before.labels)
+        total = coarse.result.multipliers.g[before.rows].reshape(-1, n).sum(axis=0)
+        spread = moved.g[after.rows].reshape(-1, n).sum(axis=0)
+        largest = np.abs(coarse.result.multipliers.g[before.rows]).max()
+        np.testing.assert_allclose(spread, total, atol=0.5 * largest + 1e-9)
+    # And they are near those of the optimum there: the balance's, an equality that is always active.
+    balance = next(b.rows for b in there.problem.constraints.blocks if b.name == "balance")
+    exact = there.result.multipliers.g[balance]
+    assert np.linalg.norm(moved.g[balance] - exact) < 0.5 * np.linalg.norm(exact)
+
+
+def _plan(intervals: int, objective: float, bent: float = 0.0, rest: str = "velocity") -> Any:
+    spline = RestToRestSpline(intervals, rest)
+    control = bent * np.sin(np.pi * spline.greville)[:, None]
+    checks = {"closure between knots": 2e-4, "balance between knots": 0.05, "torque limits between knots": 0.0}
+    return SimpleNamespace(
+        spline=spline,
+        problem=SimpleNamespace(unpack=lambda x: (control, None)),
+        result=SimpleNamespace(x=None, objective=objective, converged=True),
+        verification=SimpleNamespace(check=lambda name: SimpleNamespace(value=checks[name])),
+    )
+
+
+@pytest.mark.parametrize(("here", "there"), [(20, 10), (20, 40), (21, 10)])
+@pytest.mark.parametrize(("rest", "order"), [("velocity", 2), ("acceleration", 1)])
+def test_limit_of_an_error_of_the_rests_order_is_exact(here: int, there: int, rest: str, order: int) -> None:
+    """Closed form: J(N) = 100 + 60 / N**p; the bar is what is left of it on the finer mesh."""
+    accuracy = compared(
+        *(_plan(n, 100 + 60 / n**order, rest=rest) for n in (here, there)),
+    )
+    assert accuracy.objective_limit == pytest.approx(100.0)
+    assert accuracy.objective_error == pytest.approx(0.6 / here**order)
+    assert accuracy.objective_bar == pytest.approx(60 / max(here, there) ** order)
+
+
+def test_another_motion_gives_no_estimate_and_says_so() -> None:
+    accuracy = compared(_plan(20, 100.0), _plan(10, 110.0, bent=2.0))
+    assert not accuracy.estimated
+    assert "another" in accuracy.remark
+
+
+def test_what_is_unmet_is_named_with_its_amount() -> None:
+    wanted = Refine(objective_error=0.02, closure=1e-4, balance=0.1, torque_excess=0.1)
+    assert unmet(Accuracy(1e-5, 0.01, 0.0, 100.0, 0.01), wanted) == ""
+    text = unmet(Accuracy(2e-4, 0.2, 0.3), wanted)
+    for words in ("objective unknown", "0.2 mm (0.1 mm", "0.2 N, Nm (0.1", "0.3 Nm (0.1"):
+        assert words in text
+
+
+def test_rivals_are_what_the_mesh_cannot_tell_apart() -> None:
+    plans = [_plan(20, objective) for objective in (100.0, 100.001, 105.0, 130.0)]
+    known = Accuracy(0.0, 0.0, 0.0, 90.0, 0.1)
+    assert [plan.result.objective for plan in rivals(plans, plans[0], known)] == [100.0, 105.0]
+    everything = rivals(plans, plans[0], Accuracy(0.0, 0.0, 0.0))
+    assert [plan.result.objective for plan in everything] == [100.0, 105.0, 130.0]
+
+
+def test_accuracy_is_written_read_and_told(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    cheap = ["solver.name=banded", "solver.starts=1", "solver.intervals=12", "refine.objective_error=0.1"]
+    words = [word for entry in cheap for word in ("--set", entry)]
+    assert main(["solve", "table5_free", "--refine", "--out", str(tmp_path), *words]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "above its limit of" in text
+    again = load_result(tmp_path)
+    assert again.scenario.refine.on
+    assert again.accuracy is not None
+    assert again.accuracy.objective_error <= 0.1
+    save(replace(again, accuracy=replace(again.accuracy, objective_limit=np.nan)), tmp_path)
+    once_more = load_result(tmp_path).accuracy
+    assert once_more is not None
+    assert np.isnan(once_more.objective_limit)
+    save(replace(again, accuracy=None), tmp_path)
+    assert load_result(tmp_path).accuracy is None

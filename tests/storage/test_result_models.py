@@ -1,0 +1,142 @@
+"""Models of a result that are another robot's, another person's or another object's end in one line, however opened.
+
+What counts as the same is judged by hand: each change below is made in one number or name of the URDF text.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from liftopt.commands.cli import main
+from liftopt.errors import InputError
+from liftopt.multibody.robots.sawyer import sawyer_agent
+from liftopt.storage.reader import load_result
+
+CHEAP = ("solver.intervals=10", "solver.starts=1")
+# Seven hinges and a hand: the outline of another maker's arm.
+LINKS = ("world", "panda_link0", *(f"panda_link{i}" for i in range(1, 8)), "robot_grasp")
+BODY = (
+    '<inertial><origin xyz="0 0 0" rpy="0 0 0"/><mass value="2.0"/>'
+    '<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>'
+)
+
+
+@pytest.fixture(scope="module")
+def kept(solved: Callable[..., Any]) -> Path:
+    return Path(solved("table5", *CHEAP).folder)
+
+
+@pytest.fixture
+def folder(kept: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(kept, tmp_path / "result"))
+
+
+def panda() -> str:
+    """Return a URDF with the joints of a Franka Panda."""
+    joints = []
+    for k, (parent, child) in enumerate(pairwise(LINKS)):
+        ends = f'<parent link="{parent}"/><child link="{child}"/><origin xyz="0 0 0.2" rpy="0 {k % 2} 0"/>'
+        if child.startswith("panda") and k:
+            moving = '<axis xyz="0 0 1"/><limit effort="87" velocity="2" lower="-2.8" upper="2.8"/>'
+            joints.append(f'<joint name="panda_joint{k}" type="revolute">{ends}{moving}</joint>')
+        else:
+            joints.append(f'<joint name="{child}_fixed" type="fixed">{ends}</joint>')
+    links = "".join(f'<link name="{name}">{BODY if "panda" in name else ""}</link>' for name in LINKS)
+    return f'<robot name="panda">{links}{"".join(joints)}</robot>'
+
+
+def change(path: Path, pattern: str, replacement: str) -> None:
+    """Replace a name everywhere, and anything else where it first stands."""
+    text, count = re.subn(pattern, replacement, path.read_text(), count=0 if pattern.startswith('"robot') else 1)
+    assert count >= 1
+    path.write_text(text)
+
+
+def words(command: str, folder: Path, out: Path) -> list[str]:
+    """Return a command line that opens a result."""
+    bag = out / "none.bag"
+    return {
+        "export": ["export", str(folder), "--out", str(out), "--format", "csv"],
+        "dry-run": ["dry-run", str(folder), "--out", str(out)],
+        "compare": ["compare", str(folder), "--robot", str(bag), "--out", str(out)],
+        "report": ["report", str(folder), "--html", str(out)],
+        "plot": ["plot", str(folder), "--out", str(out)],
+        "view": ["view", str(folder), "--html", str(out)],
+        "crosscheck": ["crosscheck", str(folder)],
+    }[command]
+
+
+@pytest.mark.parametrize("command", ["export", "dry-run", "compare", "report", "plot", "view", "crosscheck"])
+def test_another_robot_is_refused_by_every_command(
+    command: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for package in ("rosbags", "mujoco") if command in ("dry-run", "crosscheck") else ():
+        pytest.importorskip(package, reason=f"{package} is in an extra")
+    (folder / "models" / "sawyer.urdf").write_text(panda())
+    assert main(words(command, folder, tmp_path / "out")) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "models/sawyer.urdf: is not the robot of scenario.toml" in error
+    assert "its joint 1 is panda_joint1, not robot_GT1 (7 joints, not 10)" in error
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("model", "pattern", "replacement", "told"),
+    [
+        ("sawyer", '"robot_Q4"', '"robot_elbow"', "its joint 7 is robot_elbow, not robot_Q4; copy"),
+        ("sawyer", '"robot_grasp"', '"tip"', "it has no frame robot_grasp"),
+        ("human_arm", '0.27029[0-9]+" rpy="-1.57', '0.37029" rpy="-1.57', r"its joint human_Q9 is 0\.100 m and 0 deg"),
+        ("human_arm", 'mass value="1.2[0-9]+"', 'mass value="1.9"', r"at human_Q8 has 1\.90 kg, not 1\.2\d kg"),
+        (
+            "sawyer",
+            'xyz="0.0200067[0-9]+ ',
+            'xyz="0.220006787829 ',
+            r"at robot_Q1 has its centre of mass 0\.200 m from where it should be",
+        ),
+        ("table", 'mass value="[0-9.]+"', 'mass value="7.0"', r"has 7\.00 kg, not 2\.00 kg"),
+        ("table", '"-0.225 0.0', '"-0.325 0.0', r"its frame grasp_human is 0\.100 m and 0 deg from where it should be"),
+    ],
+)
+def test_what_makes_a_model_anothers(folder: Path, model: str, pattern: str, replacement: str, told: str) -> None:
+    change(folder / "models" / f"{model}.urdf", pattern, replacement)
+    with pytest.raises(InputError, match=told):
+        load_result(folder)
+
+
+def test_a_scenario_of_another_lift_beside_the_models_is_refused(folder: Path) -> None:
+    change(folder / "scenario.toml", r"base_height = [0-9.]+", "base_height = 1.2")
+    with pytest.raises(InputError, match=r"sawyer\.urdf: is not the robot of scenario\.toml beside it: its joint"):
+        load_result(folder)
+
+
+@pytest.mark.parametrize("path", ["human_arm", "sawyer"])
+def test_small_numbers_of_another_version_open(folder: Path, kept: Path, path: str) -> None:
+    """Every length that is not zero 0.4 % longer, every mass 2 % larger."""
+    file = folder / "models" / f"{path}.urdf"
+
+    def longer(found: re.Match[str]) -> str:
+        return 'xyz="' + " ".join(repr(1.004 * float(number)) for number in found[1].split()) + '" rpy'
+
+    text = re.sub(r'xyz="([^"]+)" rpy', longer, file.read_text())
+    file.write_text(re.sub(r'mass value="([^"]+)"', lambda m: f'mass value="{1.02 * float(m[1])!r}"', text))
+    assert file.read_text() != (kept / "models" / file.name).read_text()
+    assert load_result(folder).solved
+
+
+def test_the_same_robot_is_the_same() -> None:
+    """A description read back from its own text is no other robot's."""
+    from liftopt.multibody.likeness import difference
+
+    given: dict[str, Any] = dict(standing_distance=1.9, base_height=0.9, tool_length=0.15, tool_mass=0.4)
+    one = sawyer_agent(**given)
+    again, longer = sawyer_agent(**given, urdf=one.urdf), sawyer_agent(**given | {"tool_length": 0.2})
+    assert difference(again.model, one.model, ("robot_grasp",)) == ""
+    told = difference(longer.model, one.model, ("robot_grasp",))
+    assert told == "its frame robot_grasp is 0.050 m and 0 deg from where it should be"
