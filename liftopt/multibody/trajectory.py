@@ -102,7 +102,7 @@ def agent_trajectory(
     Without a moment there is none; both act on the object.
     """
     model, names = agent.model, tuple(list(agent.model.names)[1:])
-    moving = np.array([name not in agent.pinned for name in names])
+    moving = np.array([name not in agent.locked_joints for name in names])
     full_q, full_v, full_a = (np.zeros((len(q), model.nv)) for _ in range(3))
     full_q[:, moving], full_v[:, moving], full_a[:, moving] = q, v, a
     data, frame, force = model.createData(), model.frames[model.getFrameId(agent.grasp_frame)], np.array(force, float)

@@ -12,7 +12,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Verification
 from liftopt.solution.finding import Assessment
-from liftopt.solution.infeasibility_report import Obstacle, Remedy
+from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
 
 Array = npt.NDArray[np.float64]
 SOLVED = "solved"
@@ -47,7 +47,7 @@ class Solution:
         outcome: ``"solved"`` or why there is no solution, in one line.
         time: (K,) knots [s].
         agents: trajectories at the knots, the human first.
-        held: the object's trajectory at the knots.
+        object: the object's trajectory at the knots.
         urdfs: file name -> text of the very models solved.
         objective: weighted sum of the terms.
         objective_terms, objective_weights: unweighted integrals and their weights by name.
@@ -60,7 +60,7 @@ class Solution:
         notes: what the user should know (a refined mesh, a missing compiler).
         accuracy: how far it is from the lift in continuous time; None for what is no solution.
         reasons: what is in the way where there is no solution, the worst first.
-        remedies: changes that make a solution possible, each solved and verified; the smallest first.
+        suggested_changes: changes that make a solution possible, each solved and verified; the smallest first.
         assessment: what it means for the person and the robot, and how far it can be trusted, as every output tells it.
     """
 
@@ -68,7 +68,7 @@ class Solution:
     outcome: str
     time: Array
     agents: tuple[AgentTrajectory, ...]
-    held: ObjectTrajectory
+    object: ObjectTrajectory
     urdfs: dict[str, str]
     objective: float
     objective_terms: dict[str, float]
@@ -82,7 +82,7 @@ class Solution:
     notes: tuple[str, ...] = ()
     accuracy: Accuracy | None = None
     reasons: tuple[Obstacle, ...] = ()
-    remedies: tuple[Remedy, ...] = ()
+    suggested_changes: tuple[SuggestedChange, ...] = ()
     assessment: Assessment = field(default_factory=Assessment)
 
     @property

@@ -111,7 +111,7 @@ def sawyer_agent(
         name=NAME,
         urdf=text,
         model=load_model(text),
-        pinned=tuple(joint_name(NAME, row) for row in VIRTUAL),
+        locked_joints=tuple(joint_name(NAME, row) for row in VIRTUAL),
         grasp_frame=GRASP,
         limits=sawyer_limits(),
         posture=np.array(POSTURE),
