@@ -33,9 +33,10 @@ from liftopt.commands.sensitivity import add_sensitivity_parser, sensitivity
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
 from liftopt.files.interrupt import INTERRUPTED, interrupts
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.model import Scenario
 from liftopt.scenario.schema import describe
 from liftopt.storage.result_folder import in_the_way
+from liftopt.storage.scenario_source import open_scenario
 from liftopt.viz import FORMATS
 
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
@@ -188,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _solve(args: argparse.Namespace) -> int:
-    scenario = load_scenario(args.scenario, args.overrides)
+    scenario = open_scenario(args.scenario, args.overrides)
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), _progress() as progress:
         with _no_collection():

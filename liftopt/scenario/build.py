@@ -16,7 +16,6 @@ from liftopt.multibody.person.human import HAND_UNDER_EDGE, Subject, human_agent
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL, sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.scenario.model import GraspPose, Human, Robot, Scenario, Table
-from liftopt.storage.result_folder import URDF_FILES
 
 Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
@@ -28,7 +27,7 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 
     Args:
         scenario: who they are.
-        urdfs: file name -> text of the models if they were written before, as a solution keeps them.
+        urdfs: name -> text of the models if they were written before, as a solution keeps them.
     """
     return human_of(scenario, urdfs), robot_of(scenario, urdfs)
 
@@ -36,7 +35,7 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 def human_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the person; ``urdfs`` as in ``agents_of``."""
     human = scenario.human
-    agent = human_agent(subject_of(human), (urdfs or {}).get(URDF_FILES["human"]))
+    agent = human_agent(subject_of(human), (urdfs or {}).get("human"))
     friction = human.friction if human.contact == "flat" else None
     return replace(agent, grasp=replace(_grasp(human, HAND_UNDER_EDGE), friction=friction))
 
@@ -54,7 +53,7 @@ def robot_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agen
         base_height=robot.base_height,
         tool_length=robot.tool.length,
         tool_mass=robot.tool.mass,
-        urdf=(urdfs or {}).get(URDF_FILES["robot"]),
+        urdf=(urdfs or {}).get("robot"),
     )
     return replace(agent, grasp=_grasp(robot, LEVEL_TOOL))
 
@@ -68,7 +67,7 @@ def _grasp(who: Human | Robot, reference: Array) -> Grasp:
 
 def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> LiftedObject:
     """Return the table; ``urdfs`` as in ``agents_of``."""
-    table, urdf = scenario.table, (urdfs or {}).get(URDF_FILES["table"])
+    table, urdf = scenario.table, (urdfs or {}).get("table")
     return lifted_table(mass=table.mass, depth=table.depth, width=table.width, height=table.height, urdf=urdf)
 
 

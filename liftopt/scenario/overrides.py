@@ -8,7 +8,7 @@ from typing import Any
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.suggestions import did_you_mean, nearest_keys
-from liftopt.scenario.file import toml
+from liftopt.files.toml_text import toml
 from liftopt.scenario.schema import Section, describe, entries, shown_key
 
 EXAMPLE = "table.mass=3"

@@ -17,7 +17,6 @@ from liftopt.scenario.model import Scenario
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import SOLVED, Solution, StartRecord
 from liftopt.solution.verify import verify
-from liftopt.storage.result_folder import URDF_FILES
 
 Array = npt.NDArray[np.float64]
 
@@ -100,7 +99,7 @@ class Candidate:
             time=motion.time,
             agents=motion.agents,
             object=motion.object,
-            urdfs={URDF_FILES[name]: text for name, text in urdfs.items()},
+            urdfs=urdfs,
             objective=sum(weights[name] * value for name, value in terms.items()),
             objective_terms=terms,
             objective_weights=weights,

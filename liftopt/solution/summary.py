@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 from liftopt.scenario.model import scenario_to_dict
 from liftopt.solution.interpolation import between_knots
-from liftopt.storage.result_folder import FILES
 
 if TYPE_CHECKING:
     from liftopt.multibody.trajectory import AgentTrajectory
@@ -54,7 +53,7 @@ SAWYER_JOINTS = {
 TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
 
 
-def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
+def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[str] = ()) -> dict[str, Any]:
     """Return the figures that sum up a solution; every number in it is finite or None.
 
     Peaks are taken between the knots too; of what is no solution, at the knots.
@@ -62,6 +61,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
     Args:
         solution: solved or not.
         out: folder that it was written to, if any.
+        files: that were written there, by their paths within it.
     """
     solved = bool(solution.solved)
     fine = between_knots(solution) if solved else solution
@@ -75,13 +75,13 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "remedies": [asdict(change) for change in solution.suggested_changes],
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
-        "files": [] if out is None else [str(out / name) for name in FILES],
+        "files": [] if out is None else [str(out / name) for name in files],
         "scenario": scenario_to_dict(solution.scenario),
         "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
         "grasp_moment": _grasp_moment(fine),
-        "ground_reaction": _ground_reaction(fine),
+        **_ground_reactions(fine),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),
@@ -142,11 +142,11 @@ def squeeze(agents: Sequence[AgentTrajectory]) -> Array:
     return np.asarray(0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line))
 
 
-def joint_meaning(agent: str, robot_model: str, joint: str) -> str:
-    """Return what a joint is to its user: anatomy for the human, the manufacturer's name for the robot."""
-    if agent == "human":
+def joint_meaning(kind: str, robot_model: str, joint: str) -> str:
+    """Return what a joint is to its user: anatomy for a person, the manufacturer's name for a robot."""
+    if kind == "person":
         return HUMAN_JOINTS.get(joint, "")
-    return SAWYER_JOINTS.get(joint, "") if (agent, robot_model) == ("robot", "sawyer") else ""
+    return SAWYER_JOINTS.get(joint, "") if robot_model == "sawyer" else ""
 
 
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
@@ -161,7 +161,7 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
         rows.append(
             {
                 "joint": joint,
-                "meaning": joint_meaning(agent.name, solution.scenario.robot.model, joint),
+                "meaning": joint_meaning(agent.kind, solution.scenario.robot.model, joint),
                 "peak_torque_Nm": _number(tau[at, column]),
                 "peak_torque_at_s": _number(solution.time[at]),
                 "share_of_limit": _number(share[at, column]),
@@ -193,8 +193,16 @@ def _grasp_moment(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _ground_reaction(solution: Solution) -> dict[str, Any]:
-    force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
+def _ground_reactions(solution: Solution) -> dict[str, Any]:
+    """Return what the ground does to every person; as in solution.nc, the first one's without a name in front."""
+    return {
+        f"{person.name}_ground_reaction" if k else "ground_reaction": _ground_reaction(solution, person)
+        for k, person in enumerate(solution.persons)
+    }
+
+
+def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, Any]:
+    force, moment = person.ground_force, person.ground_moment
     vertical = _peak(force[:, 2], solution.time, "N")
     weight = solution.scenario.human.mass * GRAVITY
     return {

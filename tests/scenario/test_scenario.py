@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from liftopt.errors import InputError
-from liftopt.scenario.file import shipped_scenarios, tomllib
+from liftopt.files.toml_text import tomllib
+from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import (
     Human,
     Objective,

@@ -28,7 +28,6 @@ from liftopt.scenario.schema import Choice, Name, Number, Section, Whole, entrie
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
-from liftopt.storage.result_folder import URDF_FILES
 from liftopt.storage.urdf_check import read_model
 from liftopt.storage.writer import save
 
@@ -102,7 +101,7 @@ def _moved(pattern: Solution, scenario: Scenario, seed: int) -> Solution:
         time=np.linspace(0.0, scenario.duration, knots),
         agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
         object=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
-        urdfs={URDF_FILES[name]: text for name, text in texts.items()},
+        urdfs=texts,
     )
 
 

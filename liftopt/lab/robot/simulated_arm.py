@@ -18,8 +18,6 @@ and by 16 to 51 mm in position_w_id mode, where they do: an order of magnitude.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
@@ -27,7 +25,6 @@ from liftopt.multibody.mujoco_model import import_mujoco, spec_of
 from liftopt.multibody.robots.sawyer import GRASP, MOVING, NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name
 from liftopt.solution.solution import Solution
-from liftopt.storage.result_folder import URDF_FILES
 
 Array = npt.NDArray[np.float64]
 STEP = 1e-3  # [s]: the arm's motor loop runs at 1 kHz (manufacturer's page "Arm Control Systems")
@@ -57,8 +54,7 @@ class SimulatedArm:
         """
         self._mujoco = import_mujoco()
         moving = [joint_name(NAME, row) for row in MOVING]
-        alone = replace(solution, urdfs={URDF_FILES[NAME]: solution.urdfs[URDF_FILES[NAME]]})
-        spec = spec_of(alone, [joint_name(NAME, row) for row in VIRTUAL])
+        spec = spec_of([solution.urdfs[NAME]], [joint_name(NAME, row) for row in VIRTUAL])
         limits = solution.agents[1].limits
         for j, name in enumerate(moving):
             servo = spec.add_actuator(name=name, target=name, trntype=self._mujoco.mjtTrn.mjTRN_JOINT)
