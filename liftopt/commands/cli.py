@@ -36,7 +36,7 @@ from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.schema import describe
 from liftopt.storage.result_folder import in_the_way
-from liftopt.storage.scenario_source import open_scenario
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
@@ -189,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _solve(args: argparse.Namespace) -> int:
-    scenario = open_scenario(args.scenario, args.overrides)
+    scenario = scenario_or_solved(args.scenario, args.overrides)
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), _progress() as progress:
         with _no_collection():

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.scenario.model import scenario_to_dict
-from liftopt.storage.scenario_source import open_scenario
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def pareto(args: argparse.Namespace, progress: Callable[[str], None] | None = No
         InputError: the scenario or an option is wrong, or a file cannot be written.
         LiftoptError: there is no verified solution at all.
     """
-    scenario, out = open_scenario(args.scenario, args.overrides), Path(args.out)
+    scenario, out = scenario_or_solved(args.scenario, args.overrides), Path(args.out)
     there = next(folder for folder in (out, *out.absolute().parents) if os.path.exists(folder))
     if not there.is_dir():  # said before many solves, not after them
         raise InputError("--out", args.out, f"cannot be written: {there} is no folder")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.scenario.model import Scenario, scenario_to_dict, with_overrides
-from liftopt.storage.scenario_source import open_scenario
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
     plot = None if args.plot is None else Path(args.plot)
     if plot is not None and plot.suffix[1:] not in FORMATS:
         raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
-    scenario = open_scenario(args.scenario, args.overrides)
+    scenario = scenario_or_solved(args.scenario, args.overrides)
     from liftopt.studies.sensitivity import study
 
     candidate, cache = _sharp_plan(scenario, progress)

@@ -50,7 +50,8 @@ SAWYER_JOINTS = {
     "Q6": "right_j5",
     "Q7": "right_j6",
 }
-TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
+AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective
+TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
 
 
 def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[str] = ()) -> dict[str, Any]:
@@ -217,12 +218,12 @@ def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, A
 
 
 def _objective(solution: Solution) -> dict[str, Any]:
-    terms = {}
+    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), AGENT_UNIT) | TERM_UNITS
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {
             "integral": _number(integral),
-            "unit": TERM_UNITS.get(name, ""),
+            "unit": units.get(name, ""),
             "weight": _number(weight),
             "weighted": _number(weight * integral),
         }

@@ -1,6 +1,6 @@
-"""A solution as one table of labelled arrays with units: what solution.nc holds, and what xarray shows of it.
+"""A solution as named arrays with labels and units: what solution.nc holds, and what xarray shows of it.
 
-The table is described once. The writer stores it as it is, and xarray, whose import takes as long as a solve, comes in
+It is described once. The writer stores it as it is, and xarray, whose import takes as long as a solve, comes in
 only where somebody asks for it.
 """
 
@@ -38,7 +38,7 @@ class Variable(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Table:
+class NamedArrays:
     """What solution.nc holds.
 
     Attributes:
@@ -52,9 +52,9 @@ class Table:
     attributes: dict[str, Any]
 
 
-def table_of(solution: Solution) -> Table:
+def named_arrays(solution: Solution) -> NamedArrays:
     """Return all there is to keep of a solution: reading it gives an equal one."""
-    return Table(_labels(solution), _variables(solution), _attributes(solution))
+    return NamedArrays(_labels(solution), _variables(solution), _attributes(solution))
 
 
 def to_xarray(solution: Solution) -> xr.Dataset:
@@ -65,15 +65,16 @@ def to_xarray(solution: Solution) -> xr.Dataset:
     """
     import xarray as xr
 
-    table = table_of(solution)
+    arrays = named_arrays(solution)
     names = {
-        name: ((name,), np.array(labels, dtype=object), label_attributes(name)) for name, labels in table.labels.items()
+        name: ((name,), np.array(labels, dtype=object), label_attributes(name))
+        for name, labels in arrays.labels.items()
     }
     numbers = {
         name: (each.dimensions, each.values, {"units": each.units, "long_name": each.long_name})
-        for name, each in table.variables.items()
+        for name, each in arrays.variables.items()
     }
-    return xr.Dataset(numbers, coords=names, attrs=table.attributes)
+    return xr.Dataset(numbers, coords=names, attrs=arrays.attributes)
 
 
 def label_attributes(dimension: str) -> dict[str, str]:

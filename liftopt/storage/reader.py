@@ -25,7 +25,7 @@ from liftopt.storage.older_result import urdfs_beside
 from liftopt.storage.record import read_assessment, read_record
 from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
 from liftopt.storage.result_path import no_result, result_file
-from liftopt.storage.scenario_source import scenario_of
+from liftopt.storage.solved_scenario import scenario_of
 from liftopt.storage.urdf_check import check_urdf
 
 Array = npt.NDArray[np.float64]

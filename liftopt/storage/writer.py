@@ -13,7 +13,7 @@ from liftopt.errors import InputError
 from liftopt.files.checksum import sealed
 from liftopt.scenario.model import scenario_to_toml
 from liftopt.solution.solution import Solution
-from liftopt.storage.dataset import Table, label_attributes, table_of
+from liftopt.storage.dataset import NamedArrays, label_attributes, named_arrays
 from liftopt.storage.netcdf_file import read_netcdf
 from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, UNSOLVED, locked, replace_result
 from liftopt.storage.urdf_files import urdf_files
@@ -30,7 +30,7 @@ def save(solution: Solution, out: Path) -> Path:
     Raises:
         InputError: the folder or a file cannot be written.
     """
-    content = sealed(netcdf_bytes(table_of(solution)))
+    content = sealed(netcdf_bytes(named_arrays(solution)))
     beside = {SCENARIO: scenario_to_toml(solution.scenario).encode()}
     beside |= {
         f"{MODELS}/{file}": solution.urdfs[name].encode() for name, file in urdf_files(solution.scenario).items()
@@ -68,24 +68,24 @@ def holds_more_than_an_iterate(folder: Path) -> bool:
         return True
 
 
-def netcdf_bytes(table: Table) -> bytes:
-    """Return a table as a NetCDF-4 file; the same table gives the same bytes."""
+def netcdf_bytes(arrays: NamedArrays) -> bytes:
+    """Return a NetCDF-4 file; the same arrays give the same bytes."""
     import h5netcdf
     import h5py
 
     content = BytesIO()
     with h5netcdf.File(content, "w") as file:
-        for name, labels in table.labels.items():
+        for name, labels in arrays.labels.items():
             file.dimensions[name] = len(labels)
             text = file.create_variable(name, (name,), dtype=h5py.string_dtype())
             text[:] = np.array(labels, dtype=object)
             for key, value in label_attributes(name).items():
                 text.attrs[key] = value
-        file.dimensions["time"] = len(table.variables["time"].values)
-        for name, (dimensions, values, units, long_name) in table.variables.items():
+        file.dimensions["time"] = len(arrays.variables["time"].values)
+        for name, (dimensions, values, units, long_name) in arrays.variables.items():
             variable = file.create_variable(name, dimensions, data=np.asarray(values, dtype=float))
             variable.attrs["units"] = units
             variable.attrs["long_name"] = long_name
-        for key, value in table.attributes.items():
+        for key, value in arrays.attributes.items():
             file.attrs[key] = value
     return content.getvalue()

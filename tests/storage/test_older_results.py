@@ -16,7 +16,7 @@ import pytest
 from liftopt.commands.cli import main
 from liftopt.errors import InputError
 from liftopt.storage.reader import load_result
-from liftopt.storage.scenario_source import open_scenario
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.storage.writer import save
 
 
@@ -31,7 +31,7 @@ def older(folder: Path, as_of_old: Callable[[Path], None]) -> Path:
 def test_an_older_result_opens(kept: Any, older: Path, name: str) -> None:
     read = load_result(older / name)
     assert read.urdfs == kept.solution.urdfs
-    assert read.scenario == kept.solution.scenario == open_scenario(older / name)
+    assert read.scenario == kept.solution.scenario == scenario_or_solved(older / name)
     assert read.assessment == kept.solution.assessment
     for one, other in zip(read.agents, kept.solution.agents, strict=True):
         np.testing.assert_array_equal(one.tau, other.tau)

@@ -22,7 +22,7 @@ from liftopt.errors import InputError
 from liftopt.storage import result_folder
 from liftopt.storage.dataset import to_xarray
 from liftopt.storage.reader import load_result
-from liftopt.storage.scenario_source import open_scenario
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.storage.writer import save
 
 FILES = 5  # solution.nc, scenario.toml and three models
@@ -116,7 +116,7 @@ def test_failure_after_the_one_rename_leaves_the_newer_result_whole(
         left = calls[-1].relative_to(folder)
         assert str(caught.value).endswith(f"No space left on device (solution.nc is written, {left} beside it is not)")
     _same(load_result(folder), newer.solution)
-    assert open_scenario(folder) == newer.solution.scenario
+    assert scenario_or_solved(folder) == newer.solution.scenario
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
 
 
@@ -240,12 +240,12 @@ def test_nothing_reads_back_what_stands_beside_the_result(kept: Any, folder: Pat
     (folder / "models" / "sawyer.urdf").write_text("no model")
     (folder / "models" / "table.urdf").unlink()
     _same(load_result(folder), kept.solution)
-    assert open_scenario(folder) == kept.solution.scenario
+    assert scenario_or_solved(folder) == kept.solution.scenario
     shutil.rmtree(folder / "models")
     (folder / "scenario.toml").unlink()
     moved = folder.rename(folder.parent / "moved") / "solution.nc"
     _same(load_result(moved), kept.solution)
-    assert open_scenario(moved) == kept.solution.scenario
+    assert scenario_or_solved(moved) == kept.solution.scenario
 
 
 def test_the_file_is_the_dataset_and_the_dataset_is_the_file(kept: Any) -> None:

@@ -15,7 +15,7 @@ from liftopt.storage.older_result import scenario_beside
 from liftopt.storage.result_folder import NETCDF, SCENARIO_TEXT, results_in
 
 
-def open_scenario(source: str | Path | None = None, overrides: Iterable[str] = ()) -> Scenario:
+def scenario_or_solved(source: str | Path | None = None, overrides: Iterable[str] = ()) -> Scenario:
     """Return the scenario of a TOML file, or the one that a result was solved for.
 
     Args:
