@@ -17,7 +17,7 @@ from benchmarks.case import Case
 from benchmarks.scenarios import PATIENT, Varied, varied_scenarios
 
 from liftopt.scenario.build import motions_of
-from liftopt.search.cache import Workshop
+from liftopt.search.cache import SolverCache
 from liftopt.search.mesh_refinement import QUICKEST, distance, neighbour
 from liftopt.search.solve import Search
 
@@ -25,17 +25,17 @@ FINE = (40, 80, 160, 320)
 RESTS = ("velocity", "acceleration")
 
 
-def accuracy(varied: Varied, workshop: Workshop) -> dict[str, float]:
+def accuracy(varied: Varied, cache: SolverCache) -> dict[str, float]:
     """Return a scenario's objective and limit over the objective on the finest mesh, less 1, and how far it moved."""
     scenario = varied.scenario(PATIENT)
-    search = Search(scenario, workshop, motions_of(scenario), lambda line: None)
+    search = Search(scenario, cache, motions_of(scenario), lambda line: None)
     plan = fine = search.sharpened(search.best())
     known = search.accuracy
     if not plan.solved or known is None:
         raise RuntimeError(f"not solved: {varied.overrides}")
     for intervals in FINE:
         if intervals > plan.spline.intervals:
-            there = neighbour(workshop, fine, intervals, QUICKEST, np.inf, lambda line: None)
+            there = neighbour(cache, fine, intervals, QUICKEST, np.inf, lambda line: None)
             if there is None:
                 raise RuntimeError(f"no optimum on {intervals} intervals: {varied.overrides}")
             fine = there
@@ -90,8 +90,8 @@ def main() -> int:
     parser.add_argument("--repeat", type=int, default=5)
     parser.add_argument("--json", type=Path)
     args = parser.parse_args()
-    workshop, kept = Workshop(), varied_scenarios()[: args.count]
-    entries = [accuracy(varied, workshop) for varied in kept]
+    cache, kept = SolverCache(), varied_scenarios()[: args.count]
+    entries = [accuracy(varied, cache) for varied in kept]
     costs = [cost(varied, args.repeat) for varied in kept] if args.repeat else []
     print(told(entries, costs))
     if args.json:

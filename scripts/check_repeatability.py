@@ -110,20 +110,20 @@ def choose_vectors(kind: str) -> bool:
     return bool(_liftopt_banded.choose_instructions(operations)) and len(lanes._extensions()) == len(extensions)
 
 
-def answer(overrides: Sequence[str], workshop: Any) -> dict[str, Any]:
+def answer(overrides: Sequence[str], cache: Any) -> dict[str, Any]:
     """Solve one scenario and return what is compared."""
     from liftopt.scenario.model import load_scenario
     from liftopt.search.solve import lift
     from liftopt.solution.solution import CUT_SHORT
 
     began, used = time.monotonic(), time.process_time()
-    solution = lift(load_scenario("table5", list(overrides)), workshop=workshop)
+    solution = lift(load_scenario("table5", list(overrides)), cache=cache)
     digest = hashlib.sha256()
     for agent in solution.agents:
         for numbers in (agent.q, agent.v, agent.a, agent.tau, agent.grasp_force, agent.grasp_moment):
             digest.update(np.ascontiguousarray(numbers).tobytes())
     told = [solution.status, solution.notes, solution.kept_start, solution.accuracy]
-    told += [solution.reasons, solution.remedies]
+    told += [solution.reasons, solution.suggested_changes]
     told += [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]
     digest.update(repr(told).encode())
     return {
@@ -141,13 +141,13 @@ def answer(overrides: Sequence[str], workshop: Any) -> dict[str, Any]:
 
 def child(args: argparse.Namespace) -> int:
     """Solve all scenarios in this process, one line of JSON each."""
-    from liftopt.search.cache import Workshop
+    from liftopt.search.cache import SolverCache
 
     if args.simd and not choose_vectors(args.simd):
         return 0
-    workshop = Workshop()
+    cache = SolverCache()
     for overrides in scenarios(args.count):
-        found = answer([*overrides, f"solver.workers={args.workers}", *args.overrides], workshop)
+        found = answer([*overrides, f"solver.workers={args.workers}", *args.overrides], cache)
         print(json.dumps(found), flush=True)
     return 0
 

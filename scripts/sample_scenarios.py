@@ -19,7 +19,7 @@ from scipy.stats import qmc
 
 from liftopt.errors import InputError, LiftoptError
 from liftopt.scenario.model import load_scenario, with_overrides
-from liftopt.search.cache import Workshop
+from liftopt.search.cache import SolverCache
 from liftopt.search.solve import lift
 
 RANGES = {
@@ -56,12 +56,12 @@ def drawn(count: int, seed: int) -> list[list[str]]:
     return scenarios
 
 
-def answer(overrides: list[str], workshop: Workshop) -> dict[str, Any]:
+def answer(overrides: list[str], cache: SolverCache) -> dict[str, Any]:
     """Return how a scenario ended, why, and how long it took."""
     began, cpu = time.monotonic(), time.process_time()
     entry: dict[str, Any] = {"overrides": overrides}
     try:
-        solution = lift(with_overrides(load_scenario("table5"), overrides), workshop=workshop)
+        solution = lift(with_overrides(load_scenario("table5"), overrides), cache=cache)
         entry |= {"outcome": "solved" if solution.solved else solution.status.partition(":")[0].partition(" (")[0]}
         entry |= {"status": solution.status, "objective": solution.objective}
         entry |= {"starts": [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]}
@@ -86,9 +86,9 @@ def table(entries: list[dict[str, Any]]) -> str:
         lines.append(f"| {outcome} | {count} | {np.median(seconds):.2f} | {np.max(seconds):.2f} |")
     told = [entry for entry in entries if entry["outcome"] not in ("solved", "refused")]
     reasons = sum(bool(entry.get("reasons")) for entry in told)
-    remedies = sum(bool(entry.get("remedies")) for entry in told)
+    suggested_changes = sum(bool(entry.get("remedies")) for entry in told)
     lines.append(f"\n{len(entries)} scenarios; of {len(told)} without a solution {reasons} have named reasons, ")
-    lines[-1] += f"{remedies} a change that was solved with."
+    lines[-1] += f"{suggested_changes} a change that was solved with."
     return "\n".join(lines)
 
 
@@ -125,12 +125,12 @@ def main() -> int:
     parser.add_argument("--table", action="store_true", help="only sum up what is there")
     args = parser.parse_args()
     entries = _read(args.file)
-    workshop = Workshop()
+    cache = SolverCache()
     if not args.table:
         for i, overrides in enumerate(drawn(args.count, args.seed)[: args.last]):
             if i in entries or i < args.first:
                 continue
-            entries[i] = {"index": i} | answer([*overrides, *args.overrides], workshop)
+            entries[i] = {"index": i} | answer([*overrides, *args.overrides], cache)
             with args.file.open("a") as out:
                 out.write(json.dumps(entries[i]) + "\n")
     print(table(list(entries.values())))

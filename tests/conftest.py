@@ -105,7 +105,7 @@ def solution() -> SimpleNamespace:
         notes=("mesh refined to N = 40",),
         accuracy=None,
         reasons=(),
-        remedies=(),
+        suggested_changes=(),
         assessment=Assessment.of(
             [
                 Finding("verdict.mathematics", "info", "solved and verified", "Solved and verified."),

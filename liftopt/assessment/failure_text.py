@@ -23,9 +23,9 @@ def failure_text(solution: Solution, out: Path, folder: Path) -> str:
     """
     lines = [f"no verified solution: {' '.join(solution.status.split())}", *_reasons(solution.status, solution.reasons)]
     room = MOST_LINES - len(lines) - 1
-    if solution.remedies and room > 1:
+    if solution.suggested_changes and room > 1:
         lines.append("With one of these, given by --set KEY=VALUE or in the file, it was solved and verified:")
-        lines += [f"  {setting(remedy)}  ({remedy.message})" for remedy in solution.remedies[: room - 1]]
+        lines += [f"  {setting(change)}  ({change.message})" for change in solution.suggested_changes[: room - 1]]
     where = f"The best iterate, which is no lift, is in {folder}"
     lines.append(f"{where}; the solved result in {out} is as it was" if folder != out else f"{where}, marked as such")
     return "\n".join(lines) + "\n"

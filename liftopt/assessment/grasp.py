@@ -42,7 +42,7 @@ def squeeze_finding(fine: Solution) -> Finding:
     """Return how hard the two press or pull against each other; more than the object weighs is a warning."""
     squeezed = squeeze(fine.agents)
     k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.table.mass * GRAVITY
-    peak, name = abs(float(squeezed[k])), fine.held.name
+    peak, name = abs(float(squeezed[k])), fine.object.name
     verb = f"press the {name} together" if squeezed[k] > 0 else f"pull the {name} apart"
     than = f"{'' if peak > weight else 'not '}more than its weight of {weight:.0f} N"
     text = f"Hand and gripper {verb} with {peak:.0f} N at {fine.time[k]:.2f} s, {than}."
@@ -70,7 +70,7 @@ def share_finding(fine: Solution) -> Finding:
     k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
     up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
     down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.table.mass * GRAVITY
-    name, against = fine.held.name, down > AT_LIMIT * weight
+    name, against = fine.object.name, down > AT_LIMIT * weight
     pressed = f"; one of them presses the {name} down with up to {down:.0f} N while the other lifts" if against else ""
     title = f"carries {low:.0f} to {100 * share[k]:.0f} % of the load, {100 * np.nanmean(share):.0f} % on average"
     return Finding(
@@ -87,7 +87,7 @@ def share_finding(fine: Solution) -> Finding:
 
 def tilt_findings(fine: Solution) -> Iterator[Finding]:
     """Give where the object's tilt is at its limit."""
-    limits, pose, name = fine.scenario.limits, np.degrees(fine.held.pose), fine.held.name
+    limits, pose, name = fine.scenario.limits, np.degrees(fine.object.pose), fine.object.name
     for column, way, limit in ((4, "pitch", limits.table_pitch_deg), (5, "yaw", limits.table_yaw_deg)):
         tilt = np.abs(pose[:, column])
         k, part = int(np.argmax(tilt)), float((tilt >= (1 - AT_LIMIT) * limit).mean())

@@ -7,7 +7,7 @@ from math import inf, isfinite
 
 from liftopt.solution.checks import BETWEEN_KNOTS
 from liftopt.solution.finding import CAUTION, ERROR, INFO, MATHEMATICS, VERDICT, Finding
-from liftopt.solution.infeasibility_report import Remedy
+from liftopt.solution.infeasibility_report import SuggestedChange
 from liftopt.solution.solution import CUT_SHORT, Solution
 
 LARGE_ERROR = 0.05  # of the objective; more is a caution
@@ -30,9 +30,9 @@ def failure_findings(solution: Solution) -> Iterator[Finding]:
     for reason in solution.reasons:
         title = f"in the way: {reason.who}"
         yield Finding(f"{MATHEMATICS}.in_the_way", ERROR, title, _sentence(reason.message), time=reason.time)
-    for remedy in solution.remedies:
-        settings = setting(remedy)
-        text = f"With {settings} it was solved and verified: {remedy.message}."
+    for change in solution.suggested_changes:
+        settings = setting(change)
+        text = f"With {settings} it was solved and verified: {change.message}."
         yield Finding(f"{MATHEMATICS}.remedy", INFO, f"possible with {settings}", text)
     yield from _notes(solution)
 
@@ -46,9 +46,9 @@ def mathematics_findings(solution: Solution) -> Iterator[Finding]:
     yield from _notes(solution)
 
 
-def setting(remedy: Remedy) -> str:
+def setting(change: SuggestedChange) -> str:
     """Return a remedy as keys of the scenario with their values, ``"task.standing_distance = 1.80"``."""
-    return ", ".join(f"{key} = {value:.2f}" for key, value in zip(remedy.keys, remedy.values, strict=True))
+    return ", ".join(f"{key} = {value:.2f}" for key, value in zip(change.keys, change.values, strict=True))
 
 
 def _mesh(solution: Solution) -> Iterator[Finding]:

@@ -116,7 +116,7 @@ def build_constraints(
     for i, agent in enumerate(agents):
         _closure(rows, i, agent.name)
         _torque(rows, i, agent)
-        _keep_in(rows, i, agent)
+        _workspace(rows, i, agent)
         _grasp_force(rows, i, agent.name, task.max_grasp_force)
         if agent.grasp.moments:
             _moment(rows, i, agent)
@@ -149,14 +149,14 @@ def _torque(rows: _Rows, i: int, agent: Agent) -> None:
     rows.close("torque", agent.name, agent.moving_joints, lower, upper, len(rows.knots))
 
 
-def _keep_in(rows: _Rows, i: int, agent: Agent) -> None:
+def _workspace(rows: _Rows, i: int, agent: Agent) -> None:
     """Eq. 14: the grasp point stays in its half-space [m]."""
-    if agent.keep_in is None:
+    if agent.workspace is None:
         return
     n = rows.layout.coordinates[i]
-    for axis in np.flatnonzero(agent.keep_in.normal):
-        rows.add(rows.outputs_at(i, rows.knots, np.array([n + axis])), float(agent.keep_in.normal[axis]))
-    offset, above = np.array([agent.keep_in.offset]), np.array([np.inf])
+    for axis in np.flatnonzero(agent.workspace.normal):
+        rows.add(rows.outputs_at(i, rows.knots, np.array([n + axis])), float(agent.workspace.normal[axis]))
+    offset, above = np.array([agent.workspace.offset]), np.array([np.inf])
     rows.close("keep_in", agent.name, ("distance",), offset, above, len(rows.knots))
 
 

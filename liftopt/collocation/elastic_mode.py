@@ -19,7 +19,7 @@ from liftopt.collocation.assembly import Nlp, constant
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.constraints import Block
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.solvers.banded_nlp import wide_kernels
+from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.simd_nlp import wide_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
@@ -124,7 +124,7 @@ class SoftProblem(Problem):
     @cached_property
     def hard(self) -> Nlp:
         """The functions of the plain problem; callbacks among them must outlive what calls them."""
-        kernels = wide_kernels(self.plain)
+        kernels = kernels_for_simd(self.plain)
         return wide_nlp(self.plain, kernels) if kernels else self.plain.nlp
 
     @cached_property

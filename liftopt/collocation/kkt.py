@@ -110,15 +110,15 @@ def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Arr
     if part < len(team.agents):
         agent = team.agents[part]
         found = _agent_knots(agent, y, period)
-        return found if agent.grasp.bare else add_agent_wrench(agent, y, *found)
-    if all(grasp.bare for grasp in team.grasps):
-        return _object_outputs(team.held, y, period), _object_slopes(team.held, y, period)
+        return found if agent.grasp.is_point_contact else add_agent_wrench(agent, y, *found)
+    if all(grasp.is_point_contact for grasp in team.grasps):
+        return _object_outputs(team.object, y, period), _object_slopes(team.object, y, period)
     # Forces and moments take turns in y.
     wrenches = y[:, 18:].reshape(len(y), -1, 2, 3)
     forces, moments = (wrenches[:, :, i].reshape(len(y), -1) for i in (0, 1))
     bare = np.hstack([y[:, :18], forces])
-    slopes = object_wrench_slopes(team.held, y, _object_slopes(team.held, bare, period))
-    return _object_outputs(team.held, bare, period, moments), slopes
+    slopes = object_wrench_slopes(team.object, y, _object_slopes(team.object, bare, period))
+    return _object_outputs(team.object, bare, period, moments), slopes
 
 
 def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:

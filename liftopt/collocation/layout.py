@@ -90,7 +90,7 @@ class Layout:
         """
         columns = np.arange(self.force.shape[1])
         chosen = range(self.n_agents) if part == self.n_agents else (part,)
-        bare = all(self.grasps[i].bare for i in chosen)
+        bare = all(self.grasps[i].is_point_contact for i in chosen)
         rooms = np.full((len(chosen), FORCE_SIZE if bare else WRENCH_SIZE), -1)
         for room, i in zip(rooms, chosen, strict=True):
             room[: self.grasps[i].size] = columns[self.force_columns(i)]
@@ -98,7 +98,7 @@ class Layout:
 
     def kernel_others(self, part: int) -> Index:
         """Return the columns of ``control`` whose values a part's kernel takes after the forces: the attitude."""
-        follows = part < self.n_agents and not self.grasps[part].bare
+        follows = part < self.n_agents and not self.grasps[part].is_point_contact
         return np.arange(self.control.shape[1])[-3:] if follows else np.zeros(0, np.int64)
 
     def select(self, part: int) -> sp.csc_matrix:

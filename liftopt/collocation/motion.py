@@ -22,16 +22,16 @@ class Motion:
     Attributes:
         time: (K,) [s].
         agents: in the team's order.
-        held: the object.
+        object: the object.
     """
 
     time: Array
     agents: tuple[AgentTrajectory, ...]
-    held: ObjectTrajectory
+    object: ObjectTrajectory
 
     def every(self, step: int) -> Motion:
         """Return the motion at the first and every ``step``-th time after it."""
-        return Motion(self.time[::step], tuple(agent.every(step) for agent in self.agents), self.held.every(step))
+        return Motion(self.time[::step], tuple(agent.every(step) for agent in self.agents), self.object.every(step))
 
 
 def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array) -> Motion:
@@ -46,7 +46,7 @@ def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array
         own = layout.columns(i)
         agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, i], moments[:, i]))
     own = layout.columns(layout.n_agents)
-    held = object_trajectory(problem.team.held, q[:, own], v[:, own], a[:, own], forces, moments)
+    held = object_trajectory(problem.team.object, q[:, own], v[:, own], a[:, own], forces, moments)
     return Motion(phase * period, tuple(agents), held)
 
 
@@ -63,7 +63,7 @@ def objective_terms(motion: Motion) -> dict[str, float]:
     weights[1:] += step / 2
     terms = {agent.name: float(weights @ (agent.tau[:, agent.moving] ** 2).sum(axis=1)) for agent in motion.agents}
     acceleration = sum((agent.a[:, agent.moving] ** 2).sum(axis=1) for agent in motion.agents)
-    acceleration = acceleration + (motion.held.pose_acceleration**2).sum(axis=1)
+    acceleration = acceleration + (motion.object.pose_acceleration**2).sum(axis=1)
     contact = [np.hstack([agent.grasp_force, agent.grasp_moment / agent.grasp.breadth]) for agent in motion.agents]
     force = np.sum([(each**2).sum(axis=1) for each in contact], axis=0)
     return terms | {"acceleration": float(weights @ acceleration), "force": float(weights @ force)}

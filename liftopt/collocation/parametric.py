@@ -153,7 +153,7 @@ class Optimum:
         layout, team = self.problem.layout, self.problem.team
         _, column = np.nonzero(layout.control == row - len(self.multipliers.g))
         names = [joint for agent in team.agents for joint in agent.moving_joints]
-        names += [f"{team.held.name} {c}" for c in OBJECT_COORDINATES]
+        names += [f"{team.object.name} {c}" for c in OBJECT_COORDINATES]
         return f"position of {names[column[0]]}" if len(column) else "a component of a grasp force"
 
 

@@ -38,13 +38,13 @@ class Team:
 
     Attributes:
         agents: in the order of the object's grasp frames.
-        held: the object.
+        object: the object.
         topologies: of the agents and then of the object, with the values of their parameters.
         kernels: in the same order.
     """
 
     agents: tuple[Agent, ...]
-    held: LiftedObject
+    object: LiftedObject
     topologies: tuple[Topology, ...]
     kernels: tuple[Kernel, ...]
 
@@ -52,7 +52,7 @@ class Team:
     def of(
         agents: tuple[Agent, ...],
         held: LiftedObject,
-        say: Callable[[str], None] | None = None,
+        progress: Callable[[str], None] | None = None,
         like: Team | None = None,
     ) -> Team:
         """Load or compile the kernels.
@@ -60,14 +60,16 @@ class Team:
         Args:
             agents: in the order of the object's grasp frames.
             held: the object.
-            say: hears of it when that takes long.
+            progress: hears of it when that takes long.
             like: a team whose kernels are taken if they are the ones.
         """
         _check(agents, held)
         requests = kernel_requests(agents, held)
         topologies = tuple(topology for _, topology in requests)
         signatures = tuple(topology.signature() for topology in topologies)
-        kernels = like.kernels if like is not None and like.signatures == signatures else load_kernels(requests, say)
+        kernels = (
+            like.kernels if like is not None and like.signatures == signatures else load_kernels(requests, progress)
+        )
         return Team(agents, held, topologies, tuple(kernels))
 
     @cached_property
@@ -116,7 +118,7 @@ class Problem:
     def constraints(self) -> Constraints:
         """The named rows and their bounds."""
         outputs = tuple(part.kernel.n_c for part in self.parts)
-        return build_constraints(self.team.agents, self.team.held, self.task, self.layout, outputs)
+        return build_constraints(self.team.agents, self.team.object, self.task, self.layout, outputs)
 
     @cached_property
     def nlp(self) -> Nlp:
@@ -207,11 +209,11 @@ def kernel_requests(agents: tuple[Agent, ...], held: LiftedObject) -> list[tuple
     requests: list[tuple[Any, Topology]] = []
     for agent in agents:
         model, frames, grasp = agent.reduced(), (agent.grasp_frame,), agent.grasp
-        if grasp.bare:
+        if grasp.is_point_contact:
             requests.append((agent_functions, Topology.of(model, frames)))
         else:
             requests.append((wrench_agent_functions, WrenchTopology.holding(model, frames, grasp.R_hand_object)))
-    if all(agent.grasp.bare for agent in agents):
+    if all(agent.grasp.is_point_contact for agent in agents):
         requests.append((object_functions, Topology.of(held.model, held.grasp_frames)))
     else:
         requests.append((wrench_object_functions, WrenchTopology.holding(held.model, held.grasp_frames)))

@@ -254,7 +254,7 @@ def _telling(job: Callable[[argparse.Namespace, Any], str]) -> Callable[[argpars
 
 
 def _record(args: argparse.Namespace) -> int:
-    record(args, say=lambda line: _write(line + "\n"))
+    record(args, progress=lambda line: _write(line + "\n"))
     return SOLVED
 
 
@@ -333,7 +333,7 @@ def _view(args: argparse.Namespace) -> int:
         sawyer=args.sawyer,
         port=args.port,
         browser=args.browser,
-        say=lambda line: _write(line + "\n"),
+        progress=lambda line: _write(line + "\n"),
     )
     return SOLVED
 

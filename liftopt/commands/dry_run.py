@@ -37,7 +37,7 @@ def add_dry_run_parser(commands: Any, run: Callable[[argparse.Namespace], int]) 
     parser.set_defaults(run=run)
 
 
-def dry_run_text(args: argparse.Namespace, say: Callable[[str], None] | None = None) -> str:
+def dry_run_text(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:
@@ -59,7 +59,7 @@ def dry_run_text(args: argparse.Namespace, say: Callable[[str], None] | None = N
 
     solution, out = load_result(args.result), Path(args.out)
     with new_folder("--out", out) as folder:
-        run = dry_run(solution, args.mode, goal_time, trials, seed, say)
+        run = dry_run(solution, args.mode, goal_time, trials, seed, progress)
         summary = summarised(run, solution.scenario.table.depth)
         names = write_dry_run(run, summary, folder)
     return f"{summary_text(summary)}\nWritten to {out}: {', '.join(names)}\n"

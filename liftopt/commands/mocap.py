@@ -156,27 +156,27 @@ def _print(lift: RecordedLift, out: str, console: Console) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    def say(text: str) -> None:
+    def progress(text: str) -> None:
         console.print(escape(text), highlight=False, soft_wrap=True)
 
-    say(f"{lift.source}: {len(lift.time)} frames at {lift.rate:g} Hz, low-pass at {lift.cutoff:g} Hz")
+    progress(f"{lift.source}: {len(lift.time)} frames at {lift.rate:g} Hz, low-pass at {lift.cutoff:g} Hz")
     person, lengths = lift.subject, lift.lengths
     how = "estimated" if lift.stature_estimated else "given"
-    say(f"Person: {person.stature:.3f} m ({how}), {person.mass:g} kg, {person.sex}")
-    say(
+    progress(f"Person: {person.stature:.3f} m ({how}), {person.mass:g} kg, {person.sex}")
+    progress(
         "  "
         + ", ".join(f"L{i} {value:.3f}" for i, value in enumerate(vars(lengths).values(), start=1))
         + " m (L1 by stature)"
     )
-    say(f"Force of the hand: {lift.force_from}")
+    progress(f"Force of the hand: {lift.force_from}")
     if len(lift.lifts) > 1:
-        say(f"Lifts: {lift.lift_times()}" + ("" if lift.carried else "; choose one by --lift"))
+        progress(f"Lifts: {lift.lift_times()}" + ("" if lift.carried else "; choose one by --lift"))
     if lift.carried:
-        say(f"Object: away from its place from {lift.carried[0]:.2f} to {lift.carried[1]:.2f} s")
+        progress(f"Object: away from its place from {lift.carried[0]:.2f} to {lift.carried[1]:.2f} s")
     for gap_kind, count in Counter(gap.filled for gap in lift.gaps).items():
         markers = sorted({gap.marker for gap in lift.gaps if gap.filled == gap_kind})
         what = "left open" if gap_kind == "open" else f"filled by {gap_kind}"
-        say(f"Gaps {what}: {count} ({', '.join(markers)})")
+        progress(f"Gaps {what}: {count} ({', '.join(markers)})")
     table = Table("joint", "lowest", "highest", "peak torque", box=None, header_style="bold", pad_edge=False)
     for i, name in enumerate(lift.joint_names):
         scale, unit, effort = (1.0, "m", "N") if "GT" in name else (180.0 / np.pi, "deg", "Nm")
@@ -192,7 +192,7 @@ def _print(lift: RecordedLift, out: str, console: Console) -> None:
             escape(name), f"{1000 * lift.residual_rms[i]:.1f}", f"{1000 * np.nanmax(lift.residual[:, i]):.1f}"
         )
     console.print(table)
-    say(f"All markers: {1000 * float(np.sqrt(np.nanmean(lift.residual**2))):.1f} mm (rms)")
+    progress(f"All markers: {1000 * float(np.sqrt(np.nanmean(lift.residual**2))):.1f} mm (rms)")
     for note in lift.notes:
-        say(f"Note: {note}")
-    say(f"Written to {out}")
+        progress(f"Note: {note}")
+    progress(f"Written to {out}")

@@ -41,7 +41,7 @@ def add_pareto_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
     parser.set_defaults(run=run)
 
 
-def pareto(args: argparse.Namespace, say: Callable[[str], None] | None = None) -> str:
+def pareto(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:
@@ -54,7 +54,7 @@ def pareto(args: argparse.Namespace, say: Callable[[str], None] | None = None) -
         raise InputError("--out", args.out, f"cannot be written: {there} is no folder")
     from liftopt.studies.pareto import pareto_front
 
-    front = pareto_front(scenario, args.points, say)
+    front = pareto_front(scenario, args.points, progress)
     if not front.points:
         raise LiftoptError(f"no verified solution for any ratio of weights; try liftopt solve {args.scenario or ''}")
     values = front_dict(front)
@@ -106,8 +106,8 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
     from liftopt.solution.checks import FINER
     from liftopt.solution.summary import limit_share
 
-    times = np.linspace(0.0, point.plan.problem.task.duration, FINER * point.plan.spline.intervals + 1)
-    human, robot = (float(limit_share(agent).max()) for agent in point.plan.at(times).agents)
+    times = np.linspace(0.0, point.candidate.problem.task.duration, FINER * point.candidate.spline.intervals + 1)
+    human, robot = (float(limit_share(agent).max()) for agent in point.candidate.at(times).agents)
     return {
         "human_weight": point.weights[0],
         "robot_weight": point.weights[1],
@@ -116,7 +116,7 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
         "human_load_share": point.share,
         "human_largest_share_of_limit": human,
         "robot_largest_share_of_limit": robot,
-        "objective": float(point.plan.result.objective),
+        "objective": float(point.candidate.result.objective),
         "verified": 1,
         "dominated": int(dominated),
     }

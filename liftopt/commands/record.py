@@ -111,12 +111,12 @@ def calibration_of(args: argparse.Namespace) -> Calibration | None:
     return calibration.wired(divider_of(args, calibration.divider))
 
 
-def record(args: argparse.Namespace, say: Callable[[str], None]) -> None:
+def record(args: argparse.Namespace, progress: Callable[[str], None]) -> None:
     """Record until Ctrl-C.
 
     Args:
         args: the command line.
-        say: where to tell the user about the page, and at the end what was recorded.
+        progress: where to tell the user about the page, and at the end what was recorded.
 
     Raises:
         InputError: an option or the calibration is wrong, the port cannot be opened, the file exists or cannot be
@@ -151,13 +151,13 @@ def record(args: argparse.Namespace, say: Callable[[str], None]) -> None:
         raise
     session = RecordSession(device, log, channels, args.unit, calibration)
     try:
-        _serve(session, args.browser, say)
+        _serve(session, args.browser, progress)
     finally:
         log.close()
-    say(session.summary())
+    progress(session.summary())
 
 
-def _serve(session: RecordSession, browser: bool, say: Callable[[str], None]) -> None:
+def _serve(session: RecordSession, browser: bool, progress: Callable[[str], None]) -> None:
     from liftopt.lab.forces.record_server import RecordServer
     from liftopt.viz.viewer_server import opened
 
@@ -175,10 +175,10 @@ def _serve(session: RecordSession, browser: bool, say: Callable[[str], None]) ->
         reader.start()
         try:
             with suppress(KeyboardInterrupt):
-                say(f"Recording at {server.url} (Ctrl-C ends it)")
-                say("Every line is kept. The page's buttons mark preload and trials.")
+                progress(f"Recording at {server.url} (Ctrl-C ends it)")
+                progress("Every line is kept. The page's buttons mark preload and trials.")
                 if browser and not opened(server.url):
-                    say("No browser could be opened here: open this address in one.")
+                    progress("No browser could be opened here: open this address in one.")
                 server.serve_forever(poll_interval=0.2)
         finally:
             session.stop()

@@ -14,8 +14,8 @@ from liftopt.scenario.model import Scenario, load_scenario, scenario_to_dict, wi
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
-    from liftopt.search.cache import Workshop
-    from liftopt.search.candidate import Plan
+    from liftopt.search.cache import SolverCache
+    from liftopt.search.candidate import Candidate
     from liftopt.studies.sensitivity import Sensitivity, Study
 
 SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
@@ -45,7 +45,7 @@ def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], in
     parser.set_defaults(run=run)
 
 
-def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = None) -> str:
+def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:
@@ -58,8 +58,8 @@ def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = No
     scenario = load_scenario(args.scenario, args.overrides)
     from liftopt.studies.sensitivity import study
 
-    plan, workshop = _sharp_plan(scenario, say)
-    found = study(plan, workshop, say=say)
+    candidate, cache = _sharp_plan(scenario, progress)
+    found = study(candidate, cache, progress=progress)
     if plot is not None:
         _write_plot(found, plot)
     if args.json:
@@ -70,7 +70,7 @@ def sensitivity(args: argparse.Namespace, say: Callable[[str], None] | None = No
 def study_dict(study: Study) -> dict[str, Any]:
     """Return a study ready for JSON: slopes in the figures' units over the parameter's."""
     return {
-        "scenario": scenario_to_dict(study.plan.scenario),
+        "scenario": scenario_to_dict(study.candidate.scenario),
         "figures": study.figures,
         "busiest": list(study.busiest),
         "parameters": [
@@ -92,20 +92,20 @@ def study_dict(study: Study) -> dict[str, Any]:
     }
 
 
-def _sharp_plan(scenario: Scenario, say: Callable[[str], None] | None) -> tuple[Plan, Workshop]:
+def _sharp_plan(scenario: Scenario, progress: Callable[[str], None] | None) -> tuple[Candidate, SolverCache]:
     """Return the best plan, polished as far as the solver goes, and the workshop it comes from."""
     from liftopt.control.replanning import Replanner
-    from liftopt.search.cache import Workshop
+    from liftopt.search.cache import SolverCache
 
-    workshop = Workshop()
-    replanner = Replanner(say, workshop)
+    cache = SolverCache()
+    replanner = Replanner(progress, cache)
     solution = replanner.solve(scenario)
-    plan = replanner.latest
-    if plan is None:
+    candidate = replanner.latest
+    if candidate is None:
         raise LiftoptError(f"no verified solution to differentiate: {solution.status}")
     sharp = min(SHARP, scenario.solver.tolerance)
     polished = replanner.replan(with_overrides(scenario, [f"solver.tolerance={sharp!r}"]))
-    return (plan if polished is None or not polished.solved else polished), workshop
+    return (candidate if polished is None or not polished.solved else polished), cache
 
 
 def _write_plot(study: Study, path: Path) -> None:
@@ -122,11 +122,11 @@ def _write_plot(study: Study, path: Path) -> None:
 
 def table(study: Study) -> str:
     """Return the table that the command prints."""
-    human, robot = study.plan.problem.team.agents
+    human, robot = study.candidate.problem.team.agents
     now, busiest = study.figures, study.busiest
     joints = [name.partition("_")[2] for name in busiest]
     lines = [
-        f"{study.plan.scenario.name}: J = {now['objective']:.5g}, effort of the person "
+        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort of the person "
         f"{now[f'effort {human.name}']:.4g}, of the robot {now[f'effort {robot.name}']:.4g} N2 m2 s; the person bears",
         f"{100 * now[f'share {human.name}']:.1f} %. Nearest to their limits: "
         + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in busiest)

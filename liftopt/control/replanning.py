@@ -17,11 +17,11 @@ import time
 from dataclasses import replace
 
 from liftopt.assessment.assess import assessed
-from liftopt.collocation.codegen.kernels import Say
+from liftopt.collocation.codegen.kernels import Progress
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
-from liftopt.search.cache import Workshop
-from liftopt.search.candidate import Plan
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
 from liftopt.search.mesh_refinement import estimate
 from liftopt.search.solve import Search
 from liftopt.solution.solution import Solution, StartRecord
@@ -40,15 +40,15 @@ class Replanner:
         latest: the plan that the next one starts from, None before the first.
     """
 
-    def __init__(self, progress: Say | None = None, workshop: Workshop | None = None) -> None:
+    def __init__(self, progress: Progress | None = None, cache: SolverCache | None = None) -> None:
         """Start without a plan.
 
         Args:
             progress: hears one line at a time of what is going on.
-            workshop: that others use too; None: one of its own.
+            cache: that others use too; None: one of its own.
         """
-        self.latest: Plan | None = None
-        self._workshop = workshop or Workshop()
+        self.latest: Candidate | None = None
+        self._workshop = cache or SolverCache()
         self._say = progress or (lambda line: None)
 
     def solve(self, scenario: Scenario, *, cold: bool = False) -> Solution:
@@ -63,20 +63,20 @@ class Replanner:
             SolverError: the solver cannot run at all.
         """
         began = time.monotonic()
-        plan = None if cold else self.replan(scenario)
-        if plan is not None and plan.solved:
-            result, now = plan.result, time.monotonic()
-            record = StartRecord(plan.start, "converged", result.objective, result.iterations, result.seconds)
-            solution = plan.solution([record], {"setup": 0.0, "total": now - began})
+        candidate = None if cold else self.replan(scenario)
+        if candidate is not None and candidate.solved:
+            result, now = candidate.result, time.monotonic()
+            record = StartRecord(candidate.start, "converged", result.objective, result.iterations, result.seconds)
+            solution = candidate.solution([record], {"setup": 0.0, "total": now - began})
             late = began + scenario.solver.time_limit
-            return assessed(replace(solution, accuracy=estimate(self._workshop, plan, late, self._say)))
+            return assessed(replace(solution, accuracy=estimate(self._workshop, candidate, late, self._say)))
         search = Search(scenario, self._workshop, motions_of(scenario), self._say)
         best = search.sharpened(search.best())
         if best.solved:
             self.latest = best
         return assessed(search.solution(best))
 
-    def replan(self, scenario: Scenario) -> Plan | None:
+    def replan(self, scenario: Scenario) -> Candidate | None:
         """Return the plan of a changed scenario from the latest one, as fast as it can be had and not yet verified.
 
         Ask ``solved`` of it before it is believed: that verifies. The plan becomes the latest.
@@ -101,5 +101,5 @@ class Replanner:
         result = solver.solve(last.result.x, deadline=deadline, warm=last.result.multipliers, problem=problem)
         if not result.converged:
             return None
-        self.latest = Plan(scenario, problem, last.spline, WARM, result)
+        self.latest = Candidate(scenario, problem, last.spline, WARM, result)
         return self.latest

@@ -72,7 +72,7 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
     models = agents_of(solution.scenario, solution.urdfs)
     books = [_agent(*pair, dense.time, factor) for pair in zip(models, dense.agents, strict=True)]
     held_model = object_of(solution.scenario, solution.urdfs)
-    books.append(_object(held_model, dense.held, dense.agents, dense.time, factor))
+    books.append(_object(held_model, dense.object, dense.agents, dense.time, factor))
     *agents, held = books
     total = {
         "torques": np.sum([agent.work["torques"] for agent in agents], axis=0),

@@ -100,7 +100,7 @@ class HermiteSimpson:
     """
 
     agents: tuple[Agent, ...]
-    held: LiftedObject
+    object: LiftedObject
     task: LiftTask
     intervals: int
     still: bool = True
@@ -112,7 +112,7 @@ class HermiteSimpson:
     @cached_property
     def instant(self) -> Instant:
         """The equations at one instant."""
-        return instant(self.agents, self.held, self.task)
+        return instant(self.agents, self.object, self.task)
 
     @property
     def at(self) -> Coordinates:
@@ -219,7 +219,7 @@ class HermiteSimpson:
     def _rows(self, q: Any, v: Any, a: Any, y: Any) -> list[tuple[Any, float, float]]:
         """Return the constraints, one column a point or an interval, each with its lower and upper bound."""
         task, everywhere = self.task, self.n_points
-        tolerance, unserved = task.balance_tolerance, self.held.unserved_row()
+        tolerance, unserved = task.balance_tolerance, self.object.unserved_row()
         served = [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
         return [
             *((defect, 0.0, 0.0) for defect in self.defects(q, v, a)),
@@ -227,7 +227,7 @@ class HermiteSimpson:
             (self.instant.balance.map(everywhere)(y)[served, :], -tolerance, tolerance),
             (self.instant.closure.map(self.intervals + 1)(q[:, ::2]), 0.0, 0.0),
             (self.instant.grasp.map(everywhere)(y) / task.max_grasp_force**2, -np.inf, 1.0),
-            (self.instant.keep_in.map(everywhere)(q), 0.0, np.inf),
+            (self.instant.workspace.map(everywhere)(q), 0.0, np.inf),
         ]
 
     def _bounds(self) -> tuple[Array, Array]:

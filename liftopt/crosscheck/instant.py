@@ -73,7 +73,7 @@ class Instant:
             grasps give [N, Nm].
         closure: q -> (3 agents,) each agent's grasp point less the object's [m].
         grasp: y -> (agents,) squared norms of the grasp forces [N^2].
-        keep_in: q -> (agents with a half-space,) distance of the grasp point from its border [m].
+        workspace: q -> (agents with a half-space,) distance of the grasp point from its border [m].
     """
 
     coordinates: Coordinates
@@ -81,7 +81,7 @@ class Instant:
     balance: Any
     closure: Any
     grasp: Any
-    keep_in: Any
+    workspace: Any
 
 
 def instant(agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask) -> Instant:
@@ -98,9 +98,9 @@ def instant(agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask) -> In
     pose = [_six(at, x[at.n_joints :], constant) for x, constant in ((q, at.locked_pose), (v, 0.0), (a, 0.0))]
     balance, *edges = _object_equations(held)(*pose, force)
     distances = [
-        ca.dot(agent.keep_in.normal, hand) - agent.keep_in.offset
+        ca.dot(agent.workspace.normal, hand) - agent.workspace.offset
         for agent, hand in zip(agents, hands, strict=True)
-        if agent.keep_in is not None
+        if agent.workspace is not None
     ]
     y = ca.vertcat(q, v, a, force, tau)
     return Instant(

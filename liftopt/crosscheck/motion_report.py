@@ -18,7 +18,7 @@ from liftopt.errors import InputError
 from liftopt.solution.checks import Check
 from liftopt.solution.solution import Solution
 
-Say = Callable[[str], None]
+Progress = Callable[[str], None]
 INVERSE_DYNAMICS = 1e-6  # relative
 # A simulation keeps the grasps together at all times, a solution at its knots: bounds are for closure to 1 mm between.
 JOINT, POSITION, TURN = 0.02, 2e-3, 0.02  # [rad], [m], [rad]
@@ -28,34 +28,34 @@ BOOKS, PANELS = 1e-6, 8  # relative, panels of Simpson's rule between two knots
 UNEXPLAINED = 1e-2  # of the largest change of energy
 
 
-def motion_report(solution: Solution, say: Say | None = None) -> tuple[Check, ...]:
+def motion_report(solution: Solution, progress: Progress | None = None) -> tuple[Check, ...]:
     """Return all checks of a solution.
 
     Args:
         solution: a solved lift.
-        say: hears one line a stage.
+        progress: hears one line a stage.
 
     Raises:
         InputError: MuJoCo is not installed.
     """
-    say = say or (lambda line: None)
-    say("inverse dynamics in MuJoCo")
+    progress = progress or (lambda line: None)
+    progress("inverse dynamics in MuJoCo")
     checks = list(_inverse(solution))
     # The simulation holds the object at points.
-    if all(agent.grasp.bare for agent in solution.agents):
-        say("forward simulation in MuJoCo")
+    if all(agent.grasp.is_point_contact for agent in solution.agents):
+        progress("forward simulation in MuJoCo")
         checks += _forward(solution)
-    say("energy")
+    progress("energy")
     return (*checks, *_energy(solution))
 
 
-def result_report(solution: Solution, transcription: bool, say: Say | None = None) -> tuple[str, bool]:
+def result_report(solution: Solution, transcription: bool, progress: Progress | None = None) -> tuple[str, bool]:
     """Return the report on a solution as text, and whether all of it passed.
 
     Args:
         solution: a solved lift.
         transcription: whether to solve it again by two transcriptions on five meshes, which takes minutes.
-        say: hears one line a stage.
+        progress: hears one line a stage.
 
     Raises:
         InputError: the solution is not solved, or MuJoCo is not installed.
@@ -63,12 +63,12 @@ def result_report(solution: Solution, transcription: bool, say: Say | None = Non
     """
     if not solution.solved:
         raise InputError("RESULT", solution.status, "must be a solved and verified lift")
-    if transcription and not all(agent.grasp.bare for agent in solution.agents):
+    if transcription and not all(agent.grasp.is_point_contact for agent in solution.agents):
         raise InputError("--transcription", True, "knows point grasps only")
-    checks = motion_report(solution, say)
+    checks = motion_report(solution, progress)
     text, passed = render(checks), all(check.passed for check in checks)
     if transcription:
-        study = mesh_study(solution, say=say)
+        study = mesh_study(solution, progress=progress)
         text, passed = f"{text}\n\n{render_study(study)}", passed and study.approaching
     return text, passed
 
@@ -79,7 +79,7 @@ def _inverse(solution: Solution) -> Iterator[Check]:
 
 
 def _forward(solution: Solution) -> Iterator[Check]:
-    simulation, name = Simulation(solution), solution.held.name
+    simulation, name = Simulation(solution), solution.object.name
     windows, alone, whole = simulation.windows(), simulation.windows(serve=False), simulation.follow()
     where = f"{windows.count} windows of {1e3 * WINDOW:g} ms"
     yield from _deviation(f"MuJoCo open loop, {name}", windows.deviation, where)

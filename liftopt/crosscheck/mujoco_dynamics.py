@@ -57,7 +57,7 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
     mujoco = import_mujoco()
     model = spec_of(solution).compile()
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-    data, states, held = mujoco.MjData(model), states_of(model, solution), solution.held
+    data, states, held = mujoco.MjData(model), states_of(model, solution), solution.object
     bodies = [model.body(f"{agent.name}_grasp").id for agent in solution.agents]
     edges = [model.body(f"grasp_{agent.name}").id for agent in solution.agents]
     top = model.body(held.name).id

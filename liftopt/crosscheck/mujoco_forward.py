@@ -174,7 +174,7 @@ class Simulation:
         """Where each joint but the object's stands in qpos, and in qvel."""
         model, balls = self._model, {ball.hinges[-1] for ball in self._balls}
         names = [model.joint(j).name for j in range(model.njnt)]
-        joints = [model.joint(name) for name in names if name != f"{self.solution.held.name}_free"]
+        joints = [model.joint(name) for name in names if name != f"{self.solution.object.name}_free"]
         firsts = [(j.name, int(j.qposadr[0]), int(j.dofadr[0])) for j in joints]
         return {name: (at, slice(rate, rate + (3 if name in balls else 1))) for name, at, rate in firsts}
 
@@ -198,7 +198,7 @@ class Simulation:
     @cached_property
     def _body(self) -> int:
         """First of the object's six places in qvel: linear, then angular in body axes."""
-        return int(self._model.joint(f"{self.solution.held.name}_free").dofadr[0])
+        return int(self._model.joint(f"{self.solution.object.name}_free").dofadr[0])
 
     @property
     def _roll(self) -> int:
@@ -210,7 +210,7 @@ class Simulation:
         mujoco.mj_resetData(self._model, data)
         data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
         data.qfrc_applied[:] = self._states.tau[k]
-        data.qfrc_applied[self._roll] = self._dense.held.wrench[k, 3] * serve
+        data.qfrc_applied[self._roll] = self._dense.object.wrench[k, 3] * serve
         mujoco.mj_forward(self._model, data)
         # A constraint's force acts on its first body along world axes: on the agent, from the object.
         forces = -data.efc_force.reshape(len(self._dense.agents), 3)
@@ -220,7 +220,7 @@ class Simulation:
     def _feedforward(self, k: int, serve: bool) -> Array:
         """Return the solved torques, and the moment on the object if served, halfway through a step."""
         force: Array = self._states.tau[k : k + 2].mean(axis=0)
-        force[self._roll] = self._dense.held.wrench[k : k + 2, 3].mean() * serve
+        force[self._roll] = self._dense.object.wrench[k : k + 2, 3].mean() * serve
         return force
 
     def _feedback(self, k: int) -> Array:

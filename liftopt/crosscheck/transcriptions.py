@@ -96,14 +96,14 @@ class MeshStudy:
 
 
 def mesh_study(
-    solution: Solution, meshes: Sequence[int] = MESHES, say: Callable[[str], None] | None = None
+    solution: Solution, meshes: Sequence[int] = MESHES, progress: Callable[[str], None] | None = None
 ) -> MeshStudy:
     """Solve by both transcriptions on several meshes, each from the solution.
 
     Args:
         solution: where to start; the problem is that of its scenario.
         meshes: numbers of intervals, each twice the one before.
-        say: hears one line a mesh.
+        progress: hears one line a mesh.
 
     Raises:
         SolverError: IPOPT cannot run.
@@ -112,18 +112,18 @@ def mesh_study(
     task, rows = task_of(solution.scenario), []
     still = solution.scenario.task.rest == "acceleration"
     for intervals in meshes:
-        if say:
-            say(f"two transcriptions on {intervals} intervals")
+        if progress:
+            progress(f"two transcriptions on {intervals} intervals")
         problem, spline, found = spline_optimum(solution, team, intervals)
         motion = motion_at(problem, spline, found.x, np.linspace(0.0, 1.0, 2 * intervals + 1))
-        second = HermiteSimpson(team.agents, team.held, task, intervals, still=still)
+        second = HermiteSimpson(team.agents, team.object, task, intervals, still=still)
         optimum = second.solve(points_of(motion, second.at))
         rows.append(_row(found, optimum))
     limit = optimum
     if still:
         # From the finest optimum: on the way there both may have found a better basin.
         step = max(1, meshes[-1] // LIMIT_MESH)
-        loose = HermiteSimpson(team.agents, team.held, task, meshes[-1] // step, still=False)
+        loose = HermiteSimpson(team.agents, team.object, task, meshes[-1] // step, still=False)
         limit = loose.solve(optimum.points.every(step))
     return MeshStudy(tuple(rows), limit.objective if limit.converged else np.nan, spline.order)
 
@@ -133,7 +133,7 @@ def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Prob
     spline = motions_of(solution.scenario, intervals)
     problem = Problem(team, task_of(solution.scenario), spline.mesh())
     dense = refined(solution, max(4, 4 * intervals // solution.intervals))
-    coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.held.pose])
+    coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.object.pose])
     phase = dense.time / dense.time[-1]
     force = np.hstack([agent.grasp_force for agent in solution.agents])
     start = nearest(problem, spline, phase, coordinates, force)
@@ -146,7 +146,7 @@ def points_of(motion: Motion, at: Coordinates) -> Points:
     def joints(kind: str) -> Array:
         return np.hstack([getattr(agent, kind)[:, agent.moving] for agent in motion.agents])
 
-    held = motion.held
+    held = motion.object
     return Points(
         at.select(joints("q"), held.pose),
         at.select(joints("v"), held.pose_velocity),

@@ -120,7 +120,7 @@ def _niosh(equation: Niosh) -> Measure:
 
 
 def _iso(solution: Solution) -> Measure:
-    mass, name = solution.scenario.table.mass, solution.held.name
+    mass, name = solution.scenario.table.mass, solution.object.name
     if mass < ISO_SMALLEST:
         reading = f"The standard starts at {ISO_SMALLEST:g} kg; the {name} has {mass:g} kg."
         return Measure("iso_11228_1", "ISO 11228-1", "out of scope", "not evaluated", reading, ISO_11228_1)

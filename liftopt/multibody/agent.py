@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,8 @@ from liftopt.errors import ModelError
 Array = npt.NDArray[np.float64]
 
 
+Kind = Literal["person", "robot"]
+KINDS: tuple[Kind, ...] = ("person", "robot")
 # Grasp points nearer to each other, or to a line, than this are at one point, or on that line [m].
 SAME_PLACE = 1e-6
 
@@ -82,7 +85,7 @@ class Grasp:
         return 6 if self.moments else 3
 
     @property
-    def bare(self) -> bool:
+    def is_point_contact(self) -> bool:
         """Whether it is a force at a point and no more."""
         return not self.moments and self.friction is None
 
@@ -93,34 +96,36 @@ class Agent:
 
     Attributes:
         name: prefix of its joint names (``"human"``, ``"robot"``).
+        kind: what it is; the optimal-control core carries it and never asks.
         urdf: the very URDF text that the model was loaded from.
         model: Pinocchio model of that URDF, all joints; the base placement is in its root's fixed joint.
-        pinned: names of the virtual joints held at zero (eq. 13); they are eliminated from the optimisation.
+        locked_joints: names of the virtual joints held at zero (eq. 13); they are eliminated from the optimisation.
         grasp_frame: name of the frame that coincides with the object's grasp point.
         limits: of the joints that are not pinned.
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
-        keep_in: half-space that the grasp point must stay in, or None.
+        workspace: half-space that the grasp point must stay in, or None.
         grasp: what its hold transmits.
     """
 
     name: str
+    kind: Kind
     urdf: str
     model: pin.Model
-    pinned: tuple[str, ...]
+    locked_joints: tuple[str, ...]
     grasp_frame: str
     limits: JointLimits
     posture: Array
-    keep_in: HalfSpace | None = None
+    workspace: HalfSpace | None = None
     grasp: Grasp = Grasp()
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
         """Names of the joints that are not pinned, in the model's order."""
-        return tuple(name for name in list(self.model.names)[1:] if name not in self.pinned)
+        return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
 
     def reduced(self) -> pin.Model:
         """Return the model without the pinned joints, which stay at zero."""
-        ids = [self.model.getJointId(name) for name in self.pinned]
+        ids = [self.model.getJointId(name) for name in self.locked_joints]
         return pin.buildReducedModel(self.model, ids, np.zeros(self.model.nq))
 
 

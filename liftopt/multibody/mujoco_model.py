@@ -110,7 +110,7 @@ class States:
 
 def states_of(model: Any, solution: Solution) -> States:
     """Return a solution's motion for a model of ``spec_of``; joints that are welded there are left out."""
-    times, held = len(solution.time), solution.held
+    times, held = len(solution.time), solution.object
     qpos = np.zeros((times, model.nq))
     qvel, qacc, tau = np.zeros((3, times, model.nv))
     for agent in solution.agents:

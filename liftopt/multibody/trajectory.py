@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.multibody.agent import Agent, Grasp, JointLimits, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject
 
 Array = npt.NDArray[np.float64]
 
@@ -23,6 +23,7 @@ class AgentTrajectory:
 
     Attributes:
         name: of the agent.
+        kind: what it is.
         joint_names: (n,) names.
         moving: (n,) False for the pinned virtual joints.
         q, v, a: (K, n) position, velocity, acceleration [rad or m, per s, per s^2].
@@ -37,6 +38,7 @@ class AgentTrajectory:
     """
 
     name: str
+    kind: Kind
     joint_names: tuple[str, ...]
     moving: npt.NDArray[np.bool_]
     q: Array
@@ -59,7 +61,7 @@ class AgentTrajectory:
 
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        constant = ("name", "joint_names", "moving", "limits", "grasp")
+        constant = ("name", "kind", "joint_names", "moving", "limits", "grasp")
         over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
         return replace(self, **over_time)
 
@@ -102,7 +104,7 @@ def agent_trajectory(
     Without a moment there is none; both act on the object.
     """
     model, names = agent.model, tuple(list(agent.model.names)[1:])
-    moving = np.array([name not in agent.pinned for name in names])
+    moving = np.array([name not in agent.locked_joints for name in names])
     full_q, full_v, full_a = (np.zeros((len(q), model.nv)) for _ in range(3))
     full_q[:, moving], full_v[:, moving], full_a[:, moving] = q, v, a
     data, frame, force = model.createData(), model.frames[model.getFrameId(agent.grasp_frame)], np.array(force, float)
@@ -124,7 +126,7 @@ def agent_trajectory(
     p_world_base = model.jointPlacements[1].translation
     ground_moment = root[:, 3:] - cross(p_world_base, root[:, :3]) + cross(point - p_world_base, force) + moment
     return AgentTrajectory(
-        agent.name, names, moving, full_q, full_v, full_a, tau, force, moment, point,
+        agent.name, agent.kind, names, moving, full_q, full_v, full_a, tau, force, moment, point,
         grip @ frame.placement.rotation @ agent.grasp.R_hand_object,
         root[:, :3] + force, ground_moment, agent.limits, agent.grasp,
     )  # fmt: skip

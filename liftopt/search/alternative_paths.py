@@ -15,7 +15,7 @@ from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.transfer import nearest_controls
-from liftopt.search.initial_guess import Start
+from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import CLOSING_ITERATIONS, FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.search.moves import apart, further, keep_different
 from liftopt.search.postures import scattered
@@ -31,7 +31,7 @@ SAME = 0.06
 
 def other_ways(
     problem: Problem, kinematics: InverseKinematics, x: Array, rng: np.random.Generator, deadline: float
-) -> list[Start]:
+) -> list[InitialGuess]:
     """Return a motion with one agent on another way, for a few ways of each, the agents taking turns.
 
     Args:
@@ -59,7 +59,7 @@ def other_ways(
         between = np.max([apart(agent, q[k]) for k in (0, middle, -1)], axis=0)
         order = np.argsort(batch.terms(changed)[i] * (1 + excess), kind="stable") + 1
         kept = keep_different([0, *order], further(between, SAME), MOST + 1)
-        found.append([Start(f"{agent.name} another way {n}", changed[k - 1]) for n, k in enumerate(kept[1:], 1)])
+        found.append([InitialGuess(f"{agent.name} another way {n}", changed[k - 1]) for n, k in enumerate(kept[1:], 1)])
     return [own[n] for n in range(MOST) for own in found if n < len(own)]
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
-from liftopt.collocation.codegen.kernels import Say
+from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
-from liftopt.collocation.solvers.banded_nlp import wide_kernels
+from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Solver
 from liftopt.collocation.spline import Mesh, RestToRestSpline
@@ -21,7 +21,7 @@ T = TypeVar("T")
 LIFT_SCALING = 0.03
 
 
-class Workshop:
+class SolverCache:
     """Builds what a lift needs, or hands out what it built before; for one thread.
 
     A new subject, tool, object, task or duration keeps kernels and solvers; another number of intervals or another
@@ -37,7 +37,7 @@ class Workshop:
         self._problems: dict[RestToRestSpline, tuple[Scenario, Problem]] = {}
         self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
 
-    def problem(self, scenario: Scenario, spline: RestToRestSpline, say: Say | None = None) -> Problem:
+    def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
         """Return the lift of a scenario on a mesh; ``say`` hears of it when kernels must be compiled first."""
         robot = (scenario.robot, scenario.task.standing_distance)
         agents = (
@@ -47,9 +47,9 @@ class Workshop:
         held = self._kept("table", scenario.table, lambda: object_of(scenario))
         team = self._team
         if team is None or any(
-            new is not old for new, old in zip((*agents, held), (*team.agents, team.held), strict=True)
+            new is not old for new, old in zip((*agents, held), (*team.agents, team.object), strict=True)
         ):
-            team = self._team = Team.of(agents, held, say, like=team)
+            team = self._team = Team.of(agents, held, progress, like=team)
         if spline not in self._meshes:
             self._meshes[spline] = spline.mesh()
         known = self._problems.get(spline)
@@ -63,7 +63,7 @@ class Workshop:
         problem: Problem,
         scenario: Scenario,
         name: str,
-        say: Say | None = None,
+        progress: Progress | None = None,
         worker: int = 0,
         rough: float = 0.0,
     ) -> Solver:
@@ -78,17 +78,17 @@ class Workshop:
         if kept is None or not problem.interchangeable(kept[0]):
             made: Solver
             if name == "banded":
-                made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), say)
+                made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), progress)
             else:
                 options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)
-                made = Ipopt(problem, options, wide_kernels(problem, say))
+                made = Ipopt(problem, options, kernels_for_simd(problem, progress))
             kept = self._solvers[key] = (problem, made)
         return kept[1]
 
-    def postures(self, problem: Problem, scenario: Scenario, say: Say | None = None) -> PostureSolver:
+    def postures(self, problem: Problem, scenario: Scenario, progress: Progress | None = None) -> PostureSolver:
         """Return the solver of static postures for a lift; ``say`` hears of it when kernels must be compiled first."""
         workers = scenario.solver.workers
-        self._postures = PostureSolver(problem.team, problem.task, say, like=self._postures, workers=workers)
+        self._postures = PostureSolver(problem.team, problem.task, progress, like=self._postures, workers=workers)
         return self._postures
 
     def _kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:

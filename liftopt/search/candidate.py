@@ -23,7 +23,7 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class Candidate:
     """Where a solver stopped. It is verified when it is asked whether it is solved, and not before.
 
     Attributes:
@@ -42,7 +42,7 @@ class Plan:
     start: str
     result: SolverResult
     obstacles: str = ""
-    origin: Plan | None = None
+    origin: Candidate | None = None
 
     @cached_property
     def verification(self) -> Verification:
@@ -93,13 +93,13 @@ class Plan:
         """
         motion, team = motion_at(self.problem, self.spline, self.result.x, self.spline.phase), self.problem.team
         terms, weights = objective_terms(motion), objective_weights(self.problem)
-        urdfs = {agent.name: agent.urdf for agent in team.agents} | {team.held.name: team.held.urdf}
+        urdfs = {agent.name: agent.urdf for agent in team.agents} | {team.object.name: team.object.urdf}
         return Solution(
             scenario=self.scenario,
             outcome=self.outcome,
             time=motion.time,
             agents=motion.agents,
-            held=motion.held,
+            object=motion.object,
             urdfs={URDF_FILES[name]: text for name, text in urdfs.items()},
             objective=sum(weights[name] * value for name, value in terms.items()),
             objective_terms=terms,

@@ -16,8 +16,8 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
-from liftopt.search.candidate import Plan
-from liftopt.search.initial_guess import Repertoire, Start
+from liftopt.search.candidate import Candidate
+from liftopt.search.initial_guess import InitialGuess, InitialGuessSet
 from liftopt.search.mesh_refinement import MESH, PROMISING, QUICKEST, each_once, meshes_below, same_optimum
 from liftopt.search.multistart import follow_up, solve_all
 from liftopt.search.variations import vary
@@ -38,7 +38,7 @@ MOST_VARIED = 8
 ROUGH = 1e-5
 
 
-def scout(search: Search, found: Repertoire, tries: int, most: int | None = None) -> list[Plan]:
+def coarse_search(search: Search, found: InitialGuessSet, tries: int, most: int | None = None) -> list[Candidate]:
     """Return the optima on a coarse mesh that may lead to the best one, the best first; none if none was found.
 
     Args:
@@ -51,12 +51,12 @@ def scout(search: Search, found: Repertoire, tries: int, most: int | None = None
     if intervals < FEWEST or not tries:
         return []
     spline = search.spline.on(intervals)
-    problem = search.workshop.problem(scenario, spline, search.say)
+    problem = search.cache.problem(scenario, spline, search.progress)
     starts = found.starts(problem, tries)
-    search.say(f"trying {len(starts)} starts on {intervals} intervals")
+    search.progress(f"trying {len(starts)} starts on {intervals} intervals")
     try:
         solvers: list[Solver] = [
-            search.workshop.solver(problem, scenario, QUICKEST[0], search.say, i, ROUGH)
+            search.cache.solver(problem, scenario, QUICKEST[0], search.progress, i, ROUGH)
             for i in range(min(scenario.solver.workers, len(starts)))
         ]
     except SolverError:  # an extension that is missing: the search goes on without
@@ -66,14 +66,14 @@ def scout(search: Search, found: Repertoire, tries: int, most: int | None = None
     tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
     optima, plain = _distinct(search, problem, spline, tried), len(tried)
     if optima:
-        search.say(f"varying the best of {len(optima)} optima")
-        results = [plan.result for plan in optima]
+        search.progress(f"varying the best of {len(optima)} optima")
+        results = [candidate.result for candidate in optima]
         # A wider search, of more tries than the scenario's, is for lifts that nothing was found for: any will do.
         share = min(tries, scenario.solver.tries)
         idle, varied = min(IDLE * _unseen(tried), MOST_IDLE) * share, MOST_VARIED * share
         tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until, varied)
         optima = _distinct(search, problem, spline, tried)
-    near = [plan for plan in optima if plan.result.objective <= PROMISING * optima[0].result.objective]
+    near = [candidate for candidate in optima if candidate.result.objective <= PROMISING * optima[0].result.objective]
     chosen = near[: scenario.solver.starts]
     search.notes.append(
         f"{plain} starts and {len(tried) - plain} variations on {intervals} intervals led to {len(optima)} optima; "
@@ -83,20 +83,20 @@ def scout(search: Search, found: Repertoire, tries: int, most: int | None = None
 
 
 def _distinct(
-    search: Search, problem: Problem, spline: RestToRestSpline, tried: Sequence[tuple[Start, SolverResult]]
-) -> list[Plan]:
+    search: Search, problem: Problem, spline: RestToRestSpline, tried: Sequence[tuple[InitialGuess, SolverResult]]
+) -> list[Candidate]:
     """Return the optima found, the best first, each once."""
     mesh = f"{MESH}{spline.intervals}"
     return each_once(
         [
-            Plan(search.scenario, problem, spline, f"{start.name}{mesh}", result)
+            Candidate(search.scenario, problem, spline, f"{start.name}{mesh}", result)
             for start, result in tried
             if result.converged
         ]
     )
 
 
-def _unseen(tried: Sequence[tuple[Start, SolverResult]]) -> float:
+def _unseen(tried: Sequence[tuple[InitialGuess, SolverResult]]) -> float:
     """Return the chance that one more start leads to an optimum that none has led to so far.
 
     It is about the share of the starts that led where no other did (Good, Biometrika 40, 237-264, 1953).

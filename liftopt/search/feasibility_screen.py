@@ -42,7 +42,7 @@ def too_fast(problem: Problem) -> Obstacle | None:
     shortest = float(np.nanmax(needed))
     if shortest <= task.duration:
         return None
-    which, held = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.held.name
+    which, held = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.object.name
     text = (
         f"too fast: the {held} would exceed its speed limit along {which}; "
         f"the lift must last at least {shortest:.2f} s, not {task.duration:g} s"

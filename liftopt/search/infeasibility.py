@@ -58,7 +58,7 @@ def find(problem: Problem, starts: Sequence[Array], deadline: float) -> Finding 
 def _named(problem: Problem, violation: Violation) -> Obstacle:
     """Return a violation as an obstacle, in words."""
     who, amount, at = violation.who, violation.amount, f"at {violation.time:.2f} s"
-    share, held = f"{100 * violation.share:.0f} %", problem.team.held.name
+    share, held = f"{100 * violation.share:.0f} %", problem.team.object.name
     words = {
         "closure": f"the {who}'s grasp stays {amount:.3f} m off the {held} {at}",
         "keep_in": f"the {who}'s grasp lies {amount:.3f} m outside its half-space {at}",

@@ -34,7 +34,7 @@ PRESSED_SHARE, PRESSED, MISSED = 0.2, 0.01, 0.6
 
 
 @dataclass(frozen=True)
-class Start:
+class InitialGuess:
     """A start of the solver.
 
     Attributes:
@@ -50,14 +50,14 @@ class Start:
     agent: int | None = None
 
 
-def naive_start(problem: Problem) -> Start:
+def naive_guess(problem: Problem) -> InitialGuess:
     """Return the paper's guess: every control point 0, every force component 10 N (clipped to the bounds)."""
     layout = problem.layout
-    return Start("naive", problem.pack(np.zeros(layout.control.shape), np.full(layout.force.shape, NAIVE_FORCE)))
+    return InitialGuess("naive", problem.pack(np.zeros(layout.control.shape), np.full(layout.force.shape, NAIVE_FORCE)))
 
 
 @dataclass(frozen=True)
-class Repertoire:
+class InitialGuessSet:
     """Postures at both ends of a lift and what each agent may do between them, the most promising first.
 
     Attributes:
@@ -69,10 +69,10 @@ class Repertoire:
     last: tuple[Posture, ...]
     moves: tuple[tuple[Move, ...], ...]
 
-    def starts(self, problem: Problem, count: int) -> list[Start]:
+    def starts(self, problem: Problem, count: int) -> list[InitialGuess]:
         """Return up to ``count`` starts of the lift, on any mesh, the most promising first."""
         return [
-            Start(f"posture pair {i + 1}", blend(problem, *self._joined(problem, moves)), moves, agent)
+            InitialGuess(f"posture pair {i + 1}", blend(problem, *self._joined(problem, moves)), moves, agent)
             for i, (agent, moves) in enumerate(combinations(self.moves, count))
         ]
 
@@ -83,16 +83,16 @@ class Repertoire:
         return _together(problem, first), _together(problem, last)
 
 
-def repertoire(
+def initial_guesses(
     problem: Problem,
     most: int,
     seed: int,
     deadline: float,
-    say: Callable[[str], None] | None = None,
+    progress: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     seeds: int = 0,
     rounds: int = ROUNDS,
-) -> Repertoire | None:
+) -> InitialGuessSet | None:
     """Return what postures allow; None if none was found at one end.
 
     Args:
@@ -100,7 +100,7 @@ def repertoire(
         most: moves of one agent.
         seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
         deadline: ``time.monotonic`` value past which the search stops.
-        say: hears of progress.
+        progress: hears of progress.
         postures: solver for the problem's team, to be used again; None: one is made.
         seeds: postures that are searched from, at least; fewer than moves or ``SEEDS`` are not.
         rounds: of seeds, after which an end without a posture is given up.
@@ -109,18 +109,18 @@ def repertoire(
     if postures is None:
         # Its kernels may have to be compiled, once: that is no part of the search.
         began = time.monotonic()
-        postures = PostureSolver(problem.team, task, say)
+        postures = PostureSolver(problem.team, task, progress)
         deadline += time.monotonic() - began
     count = max(SEEDS, most, seeds)
     for attempt in range(rounds):
         if time.monotonic() > deadline:
             break
-        if say:
-            say(f"postures at both ends, from {count} seeds" + (" more" if attempt else ""))
+        if progress:
+            progress(f"postures at both ends, from {count} seeds" + (" more" if attempt else ""))
         scattered = [seed_coordinates(problem, task.start, rng if attempt or i else None) for i in range(count)]
         first, last = _ends(postures, problem, scattered, deadline)
         if first and last:
-            return Repertoire(tuple(first), tuple(last), find_moves(problem, postures, first, last, most))
+            return InitialGuessSet(tuple(first), tuple(last), find_moves(problem, postures, first, last, most))
     return None
 
 
@@ -129,12 +129,12 @@ def posture_starts(
     count: int,
     seed: int,
     deadline: float,
-    say: Callable[[str], None] | None = None,
+    progress: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     rounds: int = ROUNDS,
-) -> list[Start]:
+) -> list[InitialGuess]:
     """Return up to ``count`` starts from pairs of postures, the most promising first; see ``repertoire``."""
-    found = repertoire(problem, count, seed, deadline, say, postures, rounds=rounds)
+    found = initial_guesses(problem, count, seed, deadline, progress, postures, rounds=rounds)
     return found.starts(problem, count) if found else []
 
 
@@ -169,7 +169,9 @@ def blend(problem: Problem, first: Posture, last: Posture) -> Array:
     return x
 
 
-def recombined(problem: Problem, starts: Sequence[Start], results: Sequence[SolverResult]) -> Start | None:
+def recombined(
+    problem: Problem, starts: Sequence[InitialGuess], results: Sequence[SolverResult]
+) -> InitialGuess | None:
     """Return the start in which every agent moves as it did best.
 
     None if it did so in one of the starts, or if the moves are not known.
@@ -190,10 +192,10 @@ def recombined(problem: Problem, starts: Sequence[Start], results: Sequence[Solv
     for agent, (_, optimum) in enumerate(own):
         columns = problem.layout.control[:, problem.layout.columns(agent)]
         x[columns] = optimum[columns]
-    return Start("best moves together", x, chosen)
+    return InitialGuess("best moves together", x, chosen)
 
 
-def turned(problem: Problem, x: Array) -> Start | None:
+def turned(problem: Problem, x: Array) -> InitialGuess | None:
     """Return an optimum with the joints that press against a limit a full turn back; None where none can do that.
 
     At the other end of its range such a joint has the same posture, or nearly, and room to move on.
@@ -208,4 +210,4 @@ def turned(problem: Problem, x: Array) -> Start | None:
                 if upper - lower > 2 * np.pi - MISSED and pressed.mean() > PRESSED_SHARE:
                     y[columns[:, j]] = np.clip(q + sign * 2 * np.pi, lower, upper)
                     any_turned = True
-    return Start("a full turn back", y) if any_turned else None
+    return InitialGuess("a full turn back", y) if any_turned else None

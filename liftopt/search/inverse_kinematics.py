@@ -63,11 +63,11 @@ class InverseKinematics:
         blocks = problem.constraints.blocks
         names = [agent.name for agent in problem.team.agents]
         closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "closure"]
-        keep_in = [b for name in ("keep_in", "grasp_turn") for b in blocks if b.name == name]
-        self._kept = [names.index(b.who) + len(names) * (b.name == "grasp_turn") for b in keep_in]
-        self._offset = np.array([float(b.lower[0]) for b in keep_in])
+        workspace = [b for name in ("keep_in", "grasp_turn") for b in blocks if b.name == name]
+        self._kept = [names.index(b.who) + len(names) * (b.name == "grasp_turn") for b in workspace]
+        self._offset = np.array([float(b.lower[0]) for b in workspace])
         self._n_closure = FORCE_SIZE * len(closure)
-        rows = np.concatenate([*closure, *(np.arange(b.rows.start, b.rows.stop) for b in keep_in)])
+        rows = np.concatenate([*closure, *(np.arange(b.rows.start, b.rows.stop) for b in workspace)])
         self._batch = Batch(problem, rows)
         self._columns = problem.layout.control[0]
         free = problem.at_pose(np.full(OBJECT_SIZE, np.nan)).bounds()

@@ -21,19 +21,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from liftopt.collocation.solvers.result import BEATEN, STOPPED, SolverResult
+from liftopt.collocation.solvers.result import PRUNED, STOPPED, SolverResult
 from liftopt.collocation.spline import FEWEST
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
 from liftopt.scenario.model import Refine
-from liftopt.search.cache import Workshop
-from liftopt.search.candidate import Plan
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
 from liftopt.solution.accuracy import OTHER_MOTION, Accuracy
 
 if TYPE_CHECKING:
     from liftopt.search.solve import Search
 
-Say = Callable[[str], None]
+Progress = Callable[[str], None]
 FINEST = 400
 # Of 16 lifts optima on N = 10, 20 and 40 were up to 0.3 apart in one basin, and in two from 0.6 to 6.
 SAME_MOTION = 0.4  # [rad, m]
@@ -54,80 +54,80 @@ AFRESH = ", afresh on "  # before the mesh to which the motion of a start was ta
 SAME_OPTIMUM = 1e-4  # relative difference of two objectives
 
 
-def estimate(workshop: Workshop, plan: Plan, deadline: float, say: Say) -> Accuracy:
+def estimate(cache: SolverCache, candidate: Candidate, deadline: float, progress: Progress) -> Accuracy:
     """Return the accuracy of a verified plan, from its optimum on twice as many intervals, or on half as many.
 
     Args:
-        workshop: where solvers come from.
-        plan: solved.
+        cache: where solvers come from.
+        candidate: solved.
         deadline: ``time.monotonic`` value past which the objective is not estimated.
-        say: hears of it.
+        progress: hears of it.
     """
-    known, n = Accuracy.between_knots(plan.verification), plan.spline.intervals
+    known, n = Accuracy.between_knots(candidate.verification), candidate.spline.intervals
     for intervals in (2 * n, n // 2):
         if FEWEST <= intervals <= FINEST and time.monotonic() < deadline:
-            say(f"estimating the error of the objective on {intervals} intervals")
-            other = neighbour(workshop, plan, intervals, QUICKEST, deadline, say)
-            known = compared(plan, other) if other is not None else known
+            progress(f"estimating the error of the objective on {intervals} intervals")
+            other = neighbour(cache, candidate, intervals, QUICKEST, deadline, progress)
+            known = compared(candidate, other) if other is not None else known
             if known.estimated:
                 break
     return known
 
 
 def neighbour(
-    workshop: Workshop,
-    plan: Plan,
+    cache: SolverCache,
+    candidate: Candidate,
     intervals: int,
     solvers: Sequence[str],
     deadline: float,
-    say: Say,
-    rival: SolverResult | None = None,
+    progress: Progress,
+    incumbent: SolverResult | None = None,
     told: Callable[[str, SolverResult], None] | None = None,
     afresh: bool = False,
-) -> Plan | None:
+) -> Candidate | None:
     """Return the optimum that another one leads to on another mesh; None if no solver converges in time.
 
     Args:
-        workshop: where solvers come from.
-        plan: a converged one.
+        cache: where solvers come from.
+        candidate: a converged one.
         intervals: of the other mesh.
         solvers: names, the first to be tried first.
         deadline: ``time.monotonic`` value past which solvers stop.
-        say: hears of kernels that are compiled.
-        rival: an optimum on the other mesh; where nothing lower is in sight, or the first solver fails, there is none.
+        progress: hears of kernels that are compiled.
+        incumbent: an optimum on the other mesh; where nothing lower is in sight, or the solver fails, none is left.
         told: hears of the optimum, or that the rival stays the best, with the name of the start.
         afresh: start from the motion alone, not from its multipliers as well.
     """
-    spline, scenario = plan.spline.on(intervals), plan.scenario
-    problem = workshop.problem(scenario, spline, say)
-    start = transfer(plan.problem, plan.spline, plan.result.x, problem, spline)
-    warm = None if afresh else transfer_multipliers(plan.problem, plan.result.multipliers, problem)
-    origin, asked = plan.start.partition(MESH)[0], scenario.solver.intervals
+    spline, scenario = candidate.spline.on(intervals), candidate.scenario
+    problem = cache.problem(scenario, spline, progress)
+    start = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, spline)
+    warm = None if afresh else transfer_multipliers(candidate.problem, candidate.result.multipliers, problem)
+    origin, asked = candidate.start.partition(MESH)[0], scenario.solver.intervals
     origin += f"{AFRESH}{intervals}" if afresh else ""
     start_name = origin if intervals == asked else f"{origin}{MESH}{intervals}"
     for name in solvers:
         try:
-            solver = workshop.solver(problem, scenario, name, say)
+            solver = cache.solver(problem, scenario, name, progress)
         except SolverError:  # an extension that is missing: the next one does
             continue
         most = None if name == solvers[0] else SURE_ITERATIONS
-        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem, rival=rival, most=most)
-        if told and (result.converged or result.status == BEATEN):
+        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem, incumbent=incumbent, most=most)
+        if told and (result.converged or result.status == PRUNED):
             told(start_name, result)
         if result.converged:
-            return Plan(scenario, problem, spline, start_name, result, origin=plan)
-        if rival is not None or result.status in (STOPPED, BEATEN):
+            return Candidate(scenario, problem, spline, start_name, result, origin=candidate)
+        if incumbent is not None or result.status in (STOPPED, PRUNED):
             break
     return None
 
 
-def compared(plan: Plan, other: Plan) -> Accuracy:
+def compared(candidate: Candidate, other: Candidate) -> Accuracy:
     """Return the accuracy of a verified plan, whose optimum on another mesh is ``other``."""
-    known, apart = Accuracy.between_knots(plan.verification), distance(plan, other)
+    known, apart = Accuracy.between_knots(candidate.verification), distance(candidate, other)
     known = replace(known, intervals=other.spline.intervals, apart=apart)
-    here, there = plan.result.objective, other.result.objective
-    ratio = plan.spline.intervals / other.spline.intervals
-    limit = here - (there - here) / (ratio**plan.spline.order - 1)
+    here, there = candidate.result.objective, other.result.objective
+    ratio = candidate.spline.intervals / other.spline.intervals
+    limit = here - (there - here) / (ratio**candidate.spline.order - 1)
     if apart > SAME_MOTION or limit <= 0:
         return replace(known, remark=OTHER_MOTION.format(intervals=other.spline.intervals))
     finer = here if ratio > 1 else there
@@ -136,10 +136,12 @@ def compared(plan: Plan, other: Plan) -> Accuracy:
     )
 
 
-def distance(one: Plan, other: Plan) -> float:
+def distance(one: Candidate, other: Candidate) -> float:
     """Return how far two motions are apart: root mean square over time, of what differs most [rad, m]."""
     phase = np.linspace(0.0, 1.0, 4 * max(one.spline.intervals, other.spline.intervals) + 1)
-    first, second = (plan.spline.basis(phase) @ plan.problem.unpack(plan.result.x)[0] for plan in (one, other))
+    first, second = (
+        candidate.spline.basis(phase) @ candidate.problem.unpack(candidate.result.x)[0] for candidate in (one, other)
+    )
     return float(np.sqrt(np.mean((first - second) ** 2, axis=0)).max())
 
 
@@ -159,30 +161,30 @@ def unmet(accuracy: Accuracy, wanted: Refine) -> str:
     )
 
 
-def rivals(plans: Sequence[Plan], best: Plan, accuracy: Accuracy) -> list[Plan]:
+def rivals(candidates: Sequence[Candidate], best: Candidate, accuracy: Accuracy) -> list[Candidate]:
     """Return the plans on one mesh that it cannot tell from the best one, this first, each optimum once.
 
     Their objectives are within the estimated error of the best one's; where there is no estimate, all are.
     """
     within = best.result.objective * (1 + (accuracy.objective_error if accuracy.estimated else np.inf))
     chosen = [best]
-    for plan in plans:
-        here = plan.result.objective
-        if plan.result.converged and here <= within and not is_known(here, chosen):
-            chosen.append(plan)
+    for candidate in candidates:
+        here = candidate.result.objective
+        if candidate.result.converged and here <= within and not is_known(here, chosen):
+            chosen.append(candidate)
     return chosen
 
 
-def is_known(objective: float, plans: Sequence[Plan]) -> bool:
+def is_known(objective: float, candidates: Sequence[Candidate]) -> bool:
     """Return whether an optimum with that objective is among those on the same mesh."""
-    return any(same_optimum(objective, plan.result.objective) for plan in plans)
+    return any(same_optimum(objective, candidate.result.objective) for candidate in candidates)
 
 
-def each_once(plans: Sequence[Plan]) -> list[Plan]:
+def each_once(candidates: Sequence[Candidate]) -> list[Candidate]:
     """Return the different optima among those on one mesh, the best first."""
-    distinct: list[Plan] = []
-    for plan in sorted(plans, key=_objective):
-        distinct += [] if is_known(plan.result.objective, distinct) else [plan]
+    distinct: list[Candidate] = []
+    for candidate in sorted(candidates, key=_objective):
+        distinct += [] if is_known(candidate.result.objective, distinct) else [candidate]
     return distinct
 
 
@@ -191,7 +193,7 @@ def same_optimum(objective: float, other: float) -> bool:
     return abs(objective - other) <= SAME_OPTIMUM * objective
 
 
-def taken(search: Search, plans: Sequence[Plan], intervals: int, margin: float = 1.0) -> list[Plan]:
+def taken(search: Search, candidates: Sequence[Candidate], intervals: int, margin: float = 1.0) -> list[Candidate]:
     """Return the optima that others lead to on so many intervals, each once, the best first.
 
     Where an optimum of the coarse mesh is two on the finer one, its multipliers lead to that which presses against the
@@ -200,46 +202,54 @@ def taken(search: Search, plans: Sequence[Plan], intervals: int, margin: float =
 
     Args:
         search: hears of every solve.
-        plans: on another mesh, the best first.
+        candidates: on another mesh, the best first.
         intervals: of the mesh they are taken to.
         margin: how many times the best objective is still of interest; what promises none below is left.
     """
-    found: list[Plan] = []
+    found: list[Candidate] = []
     solvers = tuple(dict.fromkeys((search.scenario.solver.name, SURE)))
 
-    def solve(plan: Plan, afresh: bool = False) -> None:
-        rival = None
+    def solve(candidate: Candidate, afresh: bool = False) -> None:
+        incumbent = None
         if found:
             best = min(found, key=_objective).result
-            rival = replace(best, objective=margin * best.objective)
+            incumbent = replace(best, objective=margin * best.objective)
         there = neighbour(
-            search.workshop, plan, intervals, solvers, search.deadline, search.say, rival, search.record, afresh
+            search.cache,
+            candidate,
+            intervals,
+            solvers,
+            search.deadline,
+            search.progress,
+            incumbent,
+            search.record,
+            afresh,
         )
         if there is not None and not (afresh and is_known(there.result.objective, found)):
             found.append(there)
 
-    for plan in plans:
-        search.say(f"solving on {intervals} intervals: {plan.start}")
-        solve(plan)
+    for candidate in candidates:
+        search.progress(f"solving on {intervals} intervals: {candidate.start}")
+        solve(candidate)
     origin = min(found, key=_objective).origin if found else None
     if origin is not None:
-        search.say(f"solving on {intervals} intervals afresh: {origin.start}")
+        search.progress(f"solving on {intervals} intervals afresh: {origin.start}")
         solve(origin, afresh=True)
     return each_once(found)
 
 
-def finer(search: Search, plans: Sequence[Plan], intervals: int) -> Plan | None:
+def finer(search: Search, candidates: Sequence[Candidate], intervals: int) -> Candidate | None:
     """Return the best verified optimum that others lead to on so many intervals; None if there is none.
 
     Meshes between, each twice as fine, are solved on the way: from the one before, an optimum takes a third of the
     iterations it takes from a motion alone.
     """
     for between in meshes_below(intervals):
-        if plans and between > plans[0].spline.intervals:
-            plans = taken(search, plans, between, PROMISING) or plans
-    search.plans = taken(search, plans, intervals)
-    search.say("verifying with Pinocchio")
-    return next((plan for plan in search.plans if plan.solved or plan.refinable), None)
+        if candidates and between > candidates[0].spline.intervals:
+            candidates = taken(search, candidates, between, PROMISING) or candidates
+    search.candidates = taken(search, candidates, intervals)
+    search.progress("verifying with Pinocchio")
+    return next((candidate for candidate in search.candidates if candidate.solved or candidate.refinable), None)
 
 
 def meshes_below(intervals: int) -> list[int]:
@@ -250,45 +260,46 @@ def meshes_below(intervals: int) -> list[int]:
     return meshes
 
 
-def _objective(plan: Plan) -> float:
-    return plan.result.objective
+def _objective(candidate: Candidate) -> float:
+    return candidate.result.objective
 
 
-def _accuracy(search: Search, plan: Plan, origin: Plan | None) -> Accuracy:
+def _accuracy(search: Search, candidate: Candidate, origin: Candidate | None) -> Accuracy:
     """Return the accuracy of a plan beside where it came from, or where that tells little beside another mesh."""
-    if origin is not None and origin.spline.intervals >= TELLING and (known := compared(plan, origin)).estimated:
+    if origin is not None and origin.spline.intervals >= TELLING and (known := compared(candidate, origin)).estimated:
         return known
-    return estimate(search.workshop, plan, search.deadline, search.say)
+    return estimate(search.cache, candidate, search.deadline, search.progress)
 
 
-def sharpened(search: Search, plan: Plan) -> tuple[Plan, Accuracy]:
+def sharpened(search: Search, candidate: Candidate) -> tuple[Candidate, Accuracy]:
     """Return a solved plan and its accuracy, on a mesh as fine as its scenario asks for.
 
     The search goes from mesh to mesh, each twice as fine, until ``Refine`` is met, its time is over or the mesh is the
     finest there may be; what came of it is among its notes.
     """
-    accuracy = _accuracy(search, plan, plan.origin)
-    wanted, coarse = search.scenario.refine, plan.spline.intervals
+    accuracy = _accuracy(search, candidate, candidate.origin)
+    wanted, coarse = search.scenario.refine, candidate.spline.intervals
     if not wanted.on or not (first := unmet(accuracy, wanted)):
-        return plan, accuracy
+        return candidate, accuracy
     missing = first
-    while missing and 2 * plan.spline.intervals <= FINEST and time.monotonic() < search.deadline:
-        intervals = 2 * plan.spline.intervals
-        best = finer(search, rivals(search.plans, plan, accuracy), intervals)
+    while missing and 2 * candidate.spline.intervals <= FINEST and time.monotonic() < search.deadline:
+        intervals = 2 * candidate.spline.intervals
+        best = finer(search, rivals(search.candidates, candidate, accuracy), intervals)
         if best is None or not best.solved:
             search.notes.append(f"no solution was found on {intervals} intervals")
             break
-        origin = best.origin or plan
-        if origin is not plan:
+        origin = best.origin or candidate
+        if origin is not candidate:
             search.notes.append(
                 f"on {best.spline.intervals} intervals another local optimum is the best, with J = "
-                f"{best.result.objective:.5g}; on {plan.spline.intervals} it had {origin.result.objective:.5g} where "
-                f"{plan.result.objective:.5g} was the best"
+                f"{best.result.objective:.5g}; on {candidate.spline.intervals} it had "
+                f"{origin.result.objective:.5g} where "
+                f"{candidate.result.objective:.5g} was the best"
             )
-        plan, accuracy = best, _accuracy(search, best, origin)
+        candidate, accuracy = best, _accuracy(search, best, origin)
         missing = unmet(accuracy, wanted)
-    if plan.spline.intervals > coarse:
-        search.notes.append(f"mesh refined from N = {coarse} to {plan.spline.intervals}: {first}")
+    if candidate.spline.intervals > coarse:
+        search.notes.append(f"mesh refined from N = {coarse} to {candidate.spline.intervals}: {first}")
     if missing:
-        search.notes.append(f"not as accurate as asked for on {plan.spline.intervals} intervals: {missing}")
-    return plan, accuracy
+        search.notes.append(f"not as accurate as asked for on {candidate.spline.intervals} intervals: {missing}")
+    return candidate, accuracy

@@ -10,7 +10,7 @@ import pinocchio as pin
 
 from liftopt.collocation.problem import Problem
 from liftopt.multibody.agent import Agent
-from liftopt.search.initial_guess import MISSED, Start
+from liftopt.search.initial_guess import MISSED, InitialGuess
 
 Array = npt.NDArray[np.float64]
 # A joint that is nearly straight [rad] has no other way to bend; axes with less than this between them are parallel.
@@ -18,7 +18,7 @@ STRAIGHT, PARALLEL = 0.15, 1e-6
 HALF_TURN, WHOLE_TURN = (np.pi, -np.pi), (0.0, 2 * np.pi, -2 * np.pi)
 
 
-def mirrored(problem: Problem, x: Array) -> Iterator[Start]:
+def mirrored(problem: Problem, x: Array) -> Iterator[InitialGuess]:
     """Yield an optimum with one joint bent the other way and its neighbours half a turn on, where their ranges allow.
 
     That leaves the orientation of what they carry as it is, and its place but for the offsets between the axes: another
@@ -38,7 +38,7 @@ def mirrored(problem: Problem, x: Array) -> Iterator[Start]:
                 continue
             y = x.copy()
             y[columns] = np.clip(q, lower, upper)
-            yield Start(f"{agent.name} mirrored at joint {j + 1}", y)
+            yield InitialGuess(f"{agent.name} mirrored at joint {j + 1}", y)
 
 
 def in_line(agent: Agent) -> Array:

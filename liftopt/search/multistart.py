@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.solvers.parallel_map import abreast
+from liftopt.collocation.solvers.parallel_map import parallel_map
 from liftopt.collocation.solvers.result import Solver, SolverResult
-from liftopt.search.initial_guess import Start, recombined, turned
+from liftopt.search.initial_guess import InitialGuess, recombined, turned
 from liftopt.search.postures import rounded
 
 
 def solve_all(
     solvers: Sequence[Solver],
-    starts: Sequence[Start],
+    starts: Sequence[InitialGuess],
     deadline: float,
     problem: Problem | None = None,
     margin: float = 1.0,
@@ -40,14 +40,14 @@ def solve_all(
     first, *others = starts
     (leader,) = solve_each(solvers[:1], [(first, None)], deadline, problem, most)
     yield leader
-    rival = replace(leader, objective=margin * leader.objective)
-    rivalled = [(start, rival if start.moves else None) for start in others]
+    incumbent = replace(leader, objective=margin * leader.objective)
+    rivalled = [(start, incumbent if start.moves else None) for start in others]
     yield from solve_each(solvers, rivalled, deadline, problem, most)
 
 
 def solve_each(
     solvers: Sequence[Solver],
-    starts: Sequence[tuple[Start, SolverResult | None]],
+    starts: Sequence[tuple[InitialGuess, SolverResult | None]],
     deadline: float,
     problem: Problem | None = None,
     most: int | None = None,
@@ -65,18 +65,18 @@ def solve_each(
         SolverError: a solver cannot run at all.
     """
 
-    def job(start: Start, rival: SolverResult | None) -> Callable[[Solver], SolverResult]:
+    def job(start: InitialGuess, incumbent: SolverResult | None) -> Callable[[Solver], SolverResult]:
         def solve(solver: Solver) -> SolverResult:
-            return solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=rival, most=most)
+            return solver.solve(rounded(start.x), deadline=deadline, problem=problem, incumbent=incumbent, most=most)
 
         return solve
 
-    return abreast(solvers, [job(*start) for start in starts])
+    return parallel_map(solvers, [job(*start) for start in starts])
 
 
 def follow_up(
-    solver: Solver, starts: Sequence[Start], results: Sequence[SolverResult], deadline: float, problem: Problem
-) -> Iterator[tuple[Start, SolverResult]]:
+    solver: Solver, starts: Sequence[InitialGuess], results: Sequence[SolverResult], deadline: float, problem: Problem
+) -> Iterator[tuple[InitialGuess, SolverResult]]:
     """Solve from the starts that come of others' results, and yield each with its result.
 
     First from the best moves of all agents together, then from the best optimum with joints turned back that press
@@ -90,10 +90,10 @@ def follow_up(
         problem: what is solved.
     """
 
-    def together(best: SolverResult) -> Start | None:
+    def together(best: SolverResult) -> InitialGuess | None:
         return recombined(problem, starts, results)
 
-    def back(best: SolverResult) -> Start | None:
+    def back(best: SolverResult) -> InitialGuess | None:
         return turned(problem, best.x)
 
     optima = [result for result in results if result.converged]
@@ -102,6 +102,6 @@ def follow_up(
             return
         best = min(optima, key=lambda result: result.objective)
         if (start := make(best)) is not None:
-            result = solver.solve(rounded(start.x), deadline=deadline, problem=problem, rival=best)
+            result = solver.solve(rounded(start.x), deadline=deadline, problem=problem, incumbent=best)
             optima += [result] if result.converged else []
             yield start, result

@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.collocation.codegen.kernels import Say
+from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
-from liftopt.collocation.solvers.parallel_map import abreast
+from liftopt.collocation.solvers.parallel_map import parallel_map
 from liftopt.collocation.solvers.result import Solver
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask
@@ -62,14 +62,19 @@ class PostureSolver:
     """Static postures of a team with the object at a given pose."""
 
     def __init__(
-        self, team: Team, task: LiftTask, say: Say | None = None, like: PostureSolver | None = None, workers: int = 1
+        self,
+        team: Team,
+        task: LiftTask,
+        progress: Progress | None = None,
+        like: PostureSolver | None = None,
+        workers: int = 1,
     ) -> None:
         """Build the solver.
 
         Args:
             team: who holds what.
             task: its limits and weights; poses are given to ``solve``.
-            say: hears of it when kernels must be compiled first.
+            progress: hears of it when kernels must be compiled first.
             like: another one, whose solvers are taken if they fit.
             workers: postures held at a time.
         """
@@ -82,7 +87,7 @@ class PostureSolver:
         options = BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH)
         try:
             while len(self._solvers) < workers:
-                self._solvers.append(Banded(self.problem, options, say))
+                self._solvers.append(Banded(self.problem, options, progress))
         except SolverError:  # IPOPT's linear solver takes one solve at a time
             self._solvers = self._solvers or [Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))]
 
@@ -103,7 +108,7 @@ class PostureSolver:
         def job(coordinates: Array, shortfall: float) -> Callable[[Solver], Posture | None]:
             return lambda solver: _held(solver, problem, coordinates, deadline) if shortfall < CLOSED else None
 
-        return abreast(
+        return parallel_map(
             self._solvers[: self._workers], [job(*end) for end in zip(reach.coordinates, reach.shortfall, strict=True)]
         )
 
@@ -112,7 +117,7 @@ def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: float)
     """Return the static posture found from coordinates that close on the object; None if there is none in time."""
     if time.monotonic() > deadline:
         return None
-    model = problem.team.held.model
+    model = problem.team.object.model
     weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
     share, layout = np.zeros(problem.layout.force.shape), problem.layout
     share[:, [layout.force_columns(i).start + 2 for i in range(layout.n_agents)]] = weight / layout.n_agents
@@ -155,12 +160,14 @@ def scattered(agent: Agent, rng: np.random.Generator) -> Array:
 
 def _place_in_hand(team: Team, which: int, q: Array) -> Array:
     """Return where the object's centre (3,) is if it is level and an agent with posture ``q`` holds it, world [m]."""
-    agent, held = team.agents[which], team.held.model
+    agent, held = team.agents[which], team.object.model
     model = agent.reduced()
     data = model.createData()
     pin.framesForwardKinematics(model, data, q)
     p_world_hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
-    return np.asarray(p_world_hand - held.frames[held.getFrameId(team.held.grasp_frames[which])].placement.translation)
+    return np.asarray(
+        p_world_hand - held.frames[held.getFrameId(team.object.grasp_frames[which])].placement.translation
+    )
 
 
 def distinct(postures: Iterable[Posture | None], apart: float) -> list[Posture]:

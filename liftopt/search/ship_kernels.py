@@ -12,7 +12,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from liftopt.collocation.codegen.simd_kernels import load_wide
+from liftopt.collocation.codegen.simd_kernels import load_simd_kernels
 from liftopt.collocation.problem import Team, kernel_requests
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import GRASPS, load_scenario
@@ -25,8 +25,8 @@ def ship(folder: str) -> bool:
     for grasp in GRASPS:
         scenario = load_scenario(overrides=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
         team = Team.of(agents_of(scenario), object_of(scenario), _say)
-        wide = load_wide(kernel_requests(team.agents, team.held), _say)
-        whole = whole and wide is not None and all(kernel.compiled for kernel in team.kernels)
+        simd = load_simd_kernels(kernel_requests(team.agents, team.object), _say)
+        whole = whole and simd is not None and all(kernel.compiled for kernel in team.kernels)
     return whole
 
 

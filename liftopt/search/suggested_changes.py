@@ -20,11 +20,11 @@ from liftopt.collocation.solvers.result import Multipliers, Solver, SolverResult
 from liftopt.collocation.transfer import transfer
 from liftopt.errors import InputError, SolverError
 from liftopt.scenario.model import Scenario, scenario_from_dict, scenario_to_dict
-from liftopt.search.candidate import Plan
+from liftopt.search.candidate import Candidate
 from liftopt.search.feasibility_screen import too_fast
-from liftopt.search.initial_guess import Start, posture_starts
+from liftopt.search.initial_guess import InitialGuess, posture_starts
 from liftopt.search.postures import PostureSolver
-from liftopt.solution.infeasibility_report import Obstacle, Remedy
+from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
 
 if TYPE_CHECKING:
     from liftopt.search.solve import Search
@@ -46,7 +46,7 @@ FINEST = 160  # intervals of a remedy's mesh
 
 
 @dataclass(frozen=True)
-class Lever:
+class Adjustable:
     """Values of a scenario that may be changed together.
 
     Attributes:
@@ -74,29 +74,29 @@ _STRENGTH = frozenset({"torque", "grasp_force"})
 _POSTURE = _REACH | {"torque"}
 
 
-def levers(scenario: Scenario) -> list[Lever]:
+def levers(scenario: Scenario) -> list[Adjustable]:
     """Return what may be changed in a scenario, the simplest first."""
     found = [
-        Lever(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
+        Adjustable(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
               frozenset({"velocity", "torque", "grasp_force", "closure"}), 600, relative=True),
-        Lever(("table.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
-        Lever(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
+        Adjustable(("table.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
+        Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
               frozenset({"grasp_force"}), 512, relative=True),
-        Lever(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
+        Adjustable(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
               "robot base {change:.2f} m farther away", _MOTION, 256),
     ]  # fmt: skip
     for keys, where in _ends(scenario, "height"):
         lower, higher = where + " at most {value:.2f} m", where + " at least {value:.2f} m"
-        found.append(Lever(keys, 0.01, 0.1, lower, higher, _MOTION))
+        found.append(Adjustable(keys, 0.01, 0.1, lower, higher, _MOTION))
     for keys, where in _ends(scenario, "human_distance"):
-        found.append(Lever(keys, 0.01, 0.1, where + " {change:.2f} m nearer to the person",
+        found.append(Adjustable(keys, 0.01, 0.1, where + " {change:.2f} m nearer to the person",
                            where + " {change:.2f} m farther from the person", _POSTURE))  # fmt: skip
     found.append(
-        Lever(("robot.base_height",), 0.01, 0.1, "robot base {change:.2f} m lower",
+        Adjustable(("robot.base_height",), 0.01, 0.1, "robot base {change:.2f} m lower",
               "robot base {change:.2f} m higher", _POSTURE)
     )  # fmt: skip
     found.append(
-        Lever(("table.depth",), 0.01, 0.1, "object at most {value:.2f} m deep",
+        Adjustable(("table.depth",), 0.01, 0.1, "object at most {value:.2f} m deep",
               "object at least {value:.2f} m deep", _POSTURE)
     )  # fmt: skip
     return found
@@ -111,7 +111,7 @@ def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]
         yield tuple(f"task.{end}.{name}" for end in given), f"{what} at both ends"
 
 
-class Remedies:
+class SuggestedChanges:
     """Looks for changes of one scenario, for which no solution was found."""
 
     def __init__(self, search: Search, near: Iterable[Array], work: float = WORK) -> None:
@@ -124,65 +124,67 @@ class Remedies:
         """
         self.search, self.near, self.left = search, list(near), work
 
-    def against(self, obstacles: Sequence[Obstacle]) -> tuple[Remedy, ...]:
+    def against(self, obstacles: Sequence[Obstacle]) -> tuple[SuggestedChange, ...]:
         """Return verified remedies, the smallest change first."""
-        found: list[Remedy] = []
+        found: list[SuggestedChange] = []
         hints = [(lever, _hint(self.search.scenario, lever, obstacles)) for lever in levers(self.search.scenario)]
         helpful = [(lever, hint) for lever, hint in hints if hint]
         for i, (lever, hint) in enumerate(helpful):
             if not self._goes_on(0.0) or len(found) == ENOUGH:
                 break
             what = " and ".join(lever.keys)
-            self.search.say(f"looking for the smallest change that helps: {what} ({i + 1} of {len(helpful)})")
-            remedy = self._smallest(lever, hint, self.left - 2 * self.left / (len(helpful) - i + 1))
-            if remedy:
-                found.append(remedy)
-        return tuple(sorted(found, key=lambda remedy: remedy.size))
+            self.search.progress(f"looking for the smallest change that helps: {what} ({i + 1} of {len(helpful)})")
+            change = self._smallest(lever, hint, self.left - 2 * self.left / (len(helpful) - i + 1))
+            if change:
+                found.append(change)
+        return tuple(sorted(found, key=lambda change: change.size))
 
     def _goes_on(self, rest: float) -> bool:
         """Whether more work is left than ``rest``, and time."""
         return self.left > rest and time.monotonic() < self.search.deadline
 
-    def _smallest(self, lever: Lever, hint: int, rest: float) -> Remedy | None:
+    def _smallest(self, lever: Adjustable, hint: int, rest: float) -> SuggestedChange | None:
         """Return the smallest change of a lever that leads to a verified lift; ``hint`` steps are tried first.
 
         ``rest`` of the work is left to others.
         """
         signs = [sign for sign, words in ((-1, lever.less), (1, lever.more)) if words]
-        plan, steps, fails, sign = None, min(hint, lever.most), 0, 0
-        while plan is None and fails < lever.most and self._goes_on(rest):
+        candidate, steps, fails, sign = None, min(hint, lever.most), 0, 0
+        while candidate is None and fails < lever.most and self._goes_on(rest):
             for sign in signs:
-                plan = self._plan(lever, sign * steps, None)
-                if plan:
+                candidate = self._candidate(lever, sign * steps, None)
+                if candidate:
                     break
             else:
                 fails, steps = steps, min(int(GROWTH * steps) + 1, lever.most)
-        if plan is None:
+        if candidate is None:
             return None
         helps = steps
         while helps - fails > 1 and self._goes_on(rest):
             middle = (helps + fails) // 2
-            nearer = self._plan(lever, sign * middle, plan)
-            plan, helps, fails = (nearer, middle, fails) if nearer else (plan, helps, middle)
-        return self._remedy(lever, sign, plan) if self._holds(plan) else None
+            nearer = self._candidate(lever, sign * middle, candidate)
+            candidate, helps, fails = (nearer, middle, fails) if nearer else (candidate, helps, middle)
+        return self._remedy(lever, sign, candidate) if self._holds(candidate) else None
 
-    def _remedy(self, lever: Lever, sign: int, plan: Plan) -> Remedy:
-        was, values = (tuple(_get(s, key) for key in lever.keys) for s in (self.search.scenario, plan.scenario))
+    def _remedy(self, lever: Adjustable, sign: int, candidate: Candidate) -> SuggestedChange:
+        was, values = (tuple(_get(s, key) for key in lever.keys) for s in (self.search.scenario, candidate.scenario))
         change = abs(values[0] - was[0])
         words = (lever.less if sign < 0 else lever.more).format(change=change, value=values[0])
         if "{value" in (lever.less or lever.more):
             words += f", not {was[0]:g}"
         size = change / (lever.usual * (was[0] if lever.relative else 1.0))
-        return Remedy(lever.keys, values, words, round(size, 6))
+        return SuggestedChange(lever.keys, values, words, round(size, 6))
 
-    def _holds(self, plan: Plan) -> bool:
+    def _holds(self, candidate: Candidate) -> bool:
         """Whether the plan is verified, on finer meshes if it takes them."""
-        while plan.refinable and 2 * plan.spline.intervals <= FINEST:
-            finer = plan.spline.on(2 * plan.spline.intervals)
-            problem = self.search.workshop.problem(plan.scenario, finer)
-            start = transfer(plan.problem, plan.spline, plan.result.x, problem, finer)
-            plan = Plan(plan.scenario, problem, finer, plan.start, self._solve(problem, plan.scenario, start))
-        return plan.solved
+        while candidate.refinable and 2 * candidate.spline.intervals <= FINEST:
+            finer = candidate.spline.on(2 * candidate.spline.intervals)
+            problem = self.search.cache.problem(candidate.scenario, finer)
+            start = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, finer)
+            candidate = Candidate(
+                candidate.scenario, problem, finer, candidate.start, self._solve(problem, candidate.scenario, start)
+            )
+        return candidate.solved
 
     def _solve(self, problem: Problem, scenario: Scenario, x: Array, warm: Multipliers | None = None) -> SolverResult:
         """Solve from ``x`` (n_x,), and count it as work."""
@@ -193,41 +195,41 @@ class Remedies:
 
     def _solver(self, problem: Problem, scenario: Scenario) -> Solver:
         try:
-            return self.search.workshop.solver(problem, scenario, QUICK)
+            return self.search.cache.solver(problem, scenario, QUICK)
         except SolverError:
-            return self.search.workshop.solver(problem, scenario, scenario.solver.name)
+            return self.search.cache.solver(problem, scenario, scenario.solver.name)
 
-    def _plan(self, lever: Lever, steps: int, near: Plan | None) -> Plan | None:
+    def _candidate(self, lever: Adjustable, steps: int, near: Candidate | None) -> Candidate | None:
         """Return a plan of the changed scenario that converged, from a plan of a near one if there is one, or None."""
         scenario = _changed(self.search.scenario, lever, steps)
         if scenario is None:
             return None
-        workshop, spline = self.search.workshop, self.search.spline
+        cache, spline = self.search.cache, self.search.spline
         try:
-            problem = workshop.problem(scenario, spline)
+            problem = cache.problem(scenario, spline)
         except InputError:  # the change leaves what a model can be
             return None
         if too_fast(problem):
             return None
 
-        def solved(start: Start, warm: Plan | None = None) -> Plan | None:
+        def solved(start: InitialGuess, warm: Candidate | None = None) -> Candidate | None:
             result = self._solve(problem, scenario, start.x, warm.result.multipliers if warm else None)
-            plan = Plan(scenario, problem, spline, start.name, result)
-            return plan if plan.result.converged and (plan.solved or plan.refinable) else None
+            candidate = Candidate(scenario, problem, spline, start.name, result)
+            return candidate if candidate.result.converged and (candidate.solved or candidate.refinable) else None
 
-        postures = workshop.postures(problem, scenario)
+        postures = cache.postures(problem, scenario)
         if near and near.problem.same_structure(problem):
             held = self._held(postures, problem, near)
-            return solved(Start("near", near.result.x), near) if held else None
+            return solved(InitialGuess("near", near.result.x), near) if held else None
         deadline, seed = self.search.deadline, scenario.solver.seed
         starts = posture_starts(problem, STARTS, seed, deadline, postures=postures, rounds=ROUNDS)
         self.left -= POSTURES
         if starts:
             lower, upper = problem.bounds()
-            starts += [Start("near", np.clip(x, lower, upper)) for x in self.near if x.shape == lower.shape]
+            starts += [InitialGuess("near", np.clip(x, lower, upper)) for x in self.near if x.shape == lower.shape]
         return next(filter(None, map(solved, starts)), None)
 
-    def _held(self, postures: PostureSolver, problem: Problem, near: Plan) -> bool:
+    def _held(self, postures: PostureSolver, problem: Problem, near: Candidate) -> bool:
         """Whether the object can be held still at both ends, much as the motion of a plan does.
 
         A motion need not: it may begin to fall. But a solve of the changed scenario asks for it first.
@@ -238,7 +240,7 @@ class Remedies:
         return all(postures.solve(pose, seed, self.search.deadline) is not None for pose, seed in ends)
 
 
-def _hint(scenario: Scenario, lever: Lever, obstacles: Sequence[Obstacle]) -> int:
+def _hint(scenario: Scenario, lever: Adjustable, obstacles: Sequence[Obstacle]) -> int:
     """Return how many steps of a lever the obstacles seem to ask for; 0 if it cannot help against them."""
     most, was = 0.0, _get(scenario, lever.keys[0])
     for obstacle in obstacles:
@@ -258,12 +260,12 @@ def _hint(scenario: Scenario, lever: Lever, obstacles: Sequence[Obstacle]) -> in
     return int(np.ceil(most / lever.step - 1e-9))
 
 
-def _elsewhere(lever: Lever, when: float) -> bool:
+def _elsewhere(lever: Adjustable, when: float) -> bool:
     """Whether a lever moves only the end of the lift that an obstacle is not at."""
     return all(key.startswith("task.end." if when == 0.0 else "task.start.") for key in lever.keys)
 
 
-def _changed(scenario: Scenario, lever: Lever, steps: int) -> Scenario | None:
+def _changed(scenario: Scenario, lever: Adjustable, steps: int) -> Scenario | None:
     """Return the scenario with its values on the lever's grid, or None if it would be none."""
     data = scenario_to_dict(scenario)
     for key in lever.keys:

@@ -17,7 +17,7 @@ import numpy as np
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.search.alternative_paths import other_ways
-from liftopt.search.initial_guess import Start
+from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.mesh_refinement import same_optimum
 from liftopt.search.mirrored_joints import mirrored
 from liftopt.search.multistart import solve_each
@@ -38,7 +38,7 @@ class _Varied:
     """An optimum and what is left of its variations."""
 
     result: SolverResult
-    left: Iterator[Start]
+    left: Iterator[InitialGuess]
     turns: int = 0
     exhausted: bool = False
 
@@ -56,7 +56,7 @@ def vary(
     seed: int,
     deadline: float,
     most: float = np.inf,
-) -> Iterator[tuple[Start, SolverResult]]:
+) -> Iterator[tuple[InitialGuess, SolverResult]]:
     """Solve from variations of optima and of what comes of them; yield each with its result.
 
     Args:
@@ -76,7 +76,7 @@ def vary(
 
     def varied(result: SolverResult) -> _Varied:
         x, kinematics = rounded(result.x), postures.kinematics
-        kinds: tuple[Callable[[], Iterable[Start]], ...] = (
+        kinds: tuple[Callable[[], Iterable[InitialGuess]], ...] = (
             lambda: mirrored(problem, x),
             lambda: detours(problem, kinematics, x, by, deadline),
             lambda: _again_and_again(lambda: other_ways(problem, kinematics, x, rng, deadline)),
@@ -106,7 +106,7 @@ def vary(
             best = min(best, result, key=_objective)
 
 
-def _in_turns(kinds: Sequence[Callable[[], Iterable[Start]]]) -> Iterator[Start]:
+def _in_turns(kinds: Sequence[Callable[[], Iterable[InitialGuess]]]) -> Iterator[InitialGuess]:
     """Yield one of each kind after the other, each kind made when it is its turn."""
     left = [_when_needed(kind) for kind in kinds]
     while left:
@@ -117,12 +117,12 @@ def _in_turns(kinds: Sequence[Callable[[], Iterable[Start]]]) -> Iterator[Start]
                 yield start
 
 
-def _when_needed(make: Callable[[], Iterable[Start]]) -> Iterator[Start]:
+def _when_needed(make: Callable[[], Iterable[InitialGuess]]) -> Iterator[InitialGuess]:
     """Yield what is made, made when the first is asked for."""
     yield from make()
 
 
-def _again_and_again(make: Callable[[], list[Start]]) -> Iterator[Start]:
+def _again_and_again(make: Callable[[], list[InitialGuess]]) -> Iterator[InitialGuess]:
     """Yield what is made, and what is made next, until nothing is."""
     while starts := make():
         yield from starts

@@ -13,7 +13,7 @@ from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.transfer import nearest_controls
-from liftopt.search.initial_guess import Start
+from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.search.moves import apart, further, keep_different, quintic
 from liftopt.search.postures import Posture, PostureSolver, seed_coordinates
@@ -50,7 +50,7 @@ def rests(problem: Problem, postures: PostureSolver, rng: np.random.Generator, d
 
 def detours(
     problem: Problem, kinematics: InverseKinematics, x: Array, by: list[Posture], deadline: float
-) -> list[Start]:
+) -> list[InitialGuess]:
     """Return a motion changed so that one agent takes the object by way of a posture of its own and the others follow.
 
     Args:
@@ -81,7 +81,7 @@ def detours(
     changed[:, layout.control] = nearest_controls(problem, way)
     objective, most = batch.objective(changed), TOO_HIGH * batch.objective(x[None])[0]
     return [
-        Start(f"{agents[leader].name} by way of posture {n + 1}", changed[job])
+        InitialGuess(f"{agents[leader].name} by way of posture {n + 1}", changed[job])
         for job, (n, leader) in enumerate(jobs)
         if objective[job] < most
     ]

@@ -31,7 +31,7 @@ class Obstacle:
 
 
 @dataclass(frozen=True)
-class Remedy:
+class SuggestedChange:
     """A change that makes the lift possible; it was solved and verified with it.
 
     Attributes:

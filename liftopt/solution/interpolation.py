@@ -38,13 +38,13 @@ def refined(solution: Solution, factor: int) -> Solution:
         agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force, moment))
         forces.append(force)
         moments.append(moment)
-    held = solution.held
+    held = solution.object
     motion = motion_between(solution.time, held.pose, held.pose_velocity, held.pose_acceleration, time)
     return replace(
         solution,
         time=time,
         agents=tuple(agents),
-        held=object_trajectory(
+        object=object_trajectory(
             object_of(solution.scenario, solution.urdfs), *motion, np.hstack(forces), np.hstack(moments)
         ),
     )

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.errors import InputError
+from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
 from liftopt.scenario.model import Scenario
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Verification
 from liftopt.solution.finding import Assessment
-from liftopt.solution.infeasibility_report import Obstacle, Remedy
+from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
 
 Array = npt.NDArray[np.float64]
 SOLVED = "solved"
@@ -46,8 +48,8 @@ class Solution:
         scenario: what was asked, all defaults filled in.
         outcome: ``"solved"`` or why there is no solution, in one line.
         time: (K,) knots [s].
-        agents: trajectories at the knots, the human first.
-        held: the object's trajectory at the knots.
+        agents: trajectories at the knots, in the scenario's order.
+        object: the object's trajectory at the knots.
         urdfs: file name -> text of the very models solved.
         objective: weighted sum of the terms.
         objective_terms, objective_weights: unweighted integrals and their weights by name.
@@ -60,7 +62,7 @@ class Solution:
         notes: what the user should know (a refined mesh, a missing compiler).
         accuracy: how far it is from the lift in continuous time; None for what is no solution.
         reasons: what is in the way where there is no solution, the worst first.
-        remedies: changes that make a solution possible, each solved and verified; the smallest first.
+        suggested_changes: changes that make a solution possible, each solved and verified; the smallest first.
         assessment: what it means for the person and the robot, and how far it can be trusted, as every output tells it.
     """
 
@@ -68,7 +70,7 @@ class Solution:
     outcome: str
     time: Array
     agents: tuple[AgentTrajectory, ...]
-    held: ObjectTrajectory
+    object: ObjectTrajectory
     urdfs: dict[str, str]
     objective: float
     objective_terms: dict[str, float]
@@ -82,7 +84,7 @@ class Solution:
     notes: tuple[str, ...] = ()
     accuracy: Accuracy | None = None
     reasons: tuple[Obstacle, ...] = ()
-    remedies: tuple[Remedy, ...] = ()
+    suggested_changes: tuple[SuggestedChange, ...] = ()
     assessment: Assessment = field(default_factory=Assessment)
 
     @property
@@ -96,6 +98,28 @@ class Solution:
         if self.outcome != SOLVED or self.verification.passed:
             return self.outcome
         return f"verification failed: {self.verification.describe_failure()}"
+
+    def __getitem__(self, name: str) -> AgentTrajectory:
+        """Return the trajectory of the agent of that name.
+
+        Raises:
+            InputError: nobody has it.
+        """
+        for agent in self.agents:
+            if agent.name == name:
+                return agent
+        names = [agent.name for agent in self.agents]
+        raise InputError("agent", name, f"must be one of {', '.join(names)}{did_you_mean(nearest(name, names))}")
+
+    @property
+    def persons(self) -> tuple[AgentTrajectory, ...]:
+        """The people who lift, in the scenario's order."""
+        return tuple(agent for agent in self.agents if agent.kind == "person")
+
+    @property
+    def robots(self) -> tuple[AgentTrajectory, ...]:
+        """The robots that lift, in the scenario's order."""
+        return tuple(agent for agent in self.agents if agent.kind == "robot")
 
     @property
     def ground_reaction_force(self) -> Array:

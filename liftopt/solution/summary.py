@@ -72,7 +72,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "exit_status": 0 if solved else 3,
         "reason": None if solved else solution.status,
         "reasons": [asdict(reason) for reason in solution.reasons],
-        "remedies": [asdict(remedy) for remedy in solution.remedies],
+        "remedies": [asdict(change) for change in solution.suggested_changes],
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
         "files": [] if out is None else [str(out / name) for name in FILES],

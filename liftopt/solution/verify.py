@@ -49,7 +49,7 @@ def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tol
 def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64]) -> Check:
     """Eq. 16: distance of each agent's grasp point from the object's."""
     gaps = [
-        np.linalg.norm(agent.grasp_position - motion.held.grasp_position[:, i], axis=1)[at]
+        np.linalg.norm(agent.grasp_position - motion.object.grasp_position[:, i], axis=1)[at]
         for i, agent in enumerate(motion.agents)
     ]
     return _worst(name, np.stack(gaps, axis=1), limit, "m", [agent.name for agent in motion.agents], motion.time[at])
@@ -58,26 +58,26 @@ def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64])
 def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
     """Eq. 17 on the rows that the grasps serve; the other one, and all between knots, are reported."""
     tolerance, team = problem.task.balance_tolerance, problem.team
-    served = served_rows(team.agents, team.held, tolerance)
+    served = served_rows(team.agents, team.object, tolerance)
     moments = any(grasp.moments for grasp in team.grasps)
-    other = None if moments else team.held.unserved_row()
-    labels = [f"{knots.held.name} {row}" for row in BALANCE_ROWS]
+    other = None if moments else team.object.unserved_row()
+    labels = [f"{knots.object.name} {row}" for row in BALANCE_ROWS]
     pick = [labels[r] for r in served]
-    excess = np.maximum(np.abs(knots.held.wrench[:, served]) - tolerance, 0.0)
-    between = np.abs(fine.held.wrench[:, served])
+    excess = np.maximum(np.abs(knots.object.wrench[:, served]) - tolerance, 0.0)
+    between = np.abs(fine.object.wrench[:, served])
     checks = [
         _worst("balance at the knots", excess, AT_KNOTS, "SI", pick, knots.time),
         _worst("balance between knots", between, np.inf, "SI", pick, fine.time),
     ]
     if other is not None:
-        unserved = np.abs(fine.held.wrench[:, [other]])
+        unserved = np.abs(fine.object.wrench[:, [other]])
         checks.append(_worst("unserved moment", unserved, np.inf, "Nm", [labels[other]], fine.time))
     return checks
 
 
 def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list[Check]:
     """Eqs. 11, 12, 14, 15 and the limits on speed and grasp force: how far each is exceeded."""
-    task, held, names = problem.task, motion.held, [f"{motion.held.name} {c}" for c in OBJECT_COORDINATES]
+    task, held, names = problem.task, motion.object, [f"{motion.object.name} {c}" for c in OBJECT_COORDINATES]
     position, speed, torque, force = [], [], [], []
     for agent in motion.agents:
         q, v, tau = (values[:, agent.moving] for values in (agent.q, agent.v, agent.tau))
@@ -97,8 +97,8 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         _worst("grasp force cap", np.stack(force, axis=1), limit, "N", agents, motion.time),
     ]
     for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):
-        if model.keep_in is not None:
-            short = model.keep_in.offset - trajectory.grasp_position @ model.keep_in.normal
+        if model.workspace is not None:
+            short = model.workspace.offset - trajectory.grasp_position @ model.workspace.normal
             checks.append(_worst("grasp in front", short[:, None], limit, "m", [model.name], motion.time))
     checks += _holds(motion, limit)
     # np.maximum lets a NaN through where max would hide it.
@@ -107,7 +107,7 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
 
 def _holds(motion: Motion, limit: float) -> list[Check]:
     """What holds that transmit more than a force at a point keep to: moment, angle on the object, friction."""
-    checks, rotation = [], attitude(motion.held.pose[:, 3:])[0]
+    checks, rotation = [], attitude(motion.object.pose[:, 3:])[0]
     for agent in motion.agents:
         grasp, own = agent.grasp, [agent.name]
         if grasp.moments:
@@ -126,7 +126,7 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
 
 def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Check]:
     """Eqs. 18 and 19: rest at both ends as asked, the object's pose where the task fixes it."""
-    ends, task, held = [0, -1], problem.task, motion.held
+    ends, task, held = [0, -1], problem.task, motion.object
     labels = [name for agent in motion.agents for name in agent.joint_names]
     labels += [f"{held.name} {c}" for c in OBJECT_COORDINATES]
     speed = np.hstack([*(agent.v[ends] for agent in motion.agents), held.pose_velocity[ends]])

@@ -105,7 +105,7 @@ def _solution(
         outcome=record.outcome,
         time=time,
         agents=tuple(_agent(agent, data, forces[:, i], moments[:, i]) for i, agent in enumerate(agents)),
-        held=_object(held, data, forces.reshape(knots, -1), moments),
+        object=_object(held, data, forces.reshape(knots, -1), moments),
         urdfs=urdfs,
         objective=float(attributes["objective"]),
         objective_terms={name: float(attributes[f"objective_{name}"]) for name in record.objective_weights},
@@ -119,7 +119,7 @@ def _solution(
         notes=record.notes,
         accuracy=record.accuracy,
         reasons=record.reasons,
-        remedies=record.remedies,
+        suggested_changes=record.suggested_changes,
     )
     if "assessment" not in attributes:  # as files from before there was one
         return assessed(solution)
@@ -129,7 +129,7 @@ def _solution(
 def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:
     shape = (len(force), agent.model.nv)
     q, v, a, tau = (_array(data, f"{agent.name}_{kind}", shape) for kind in ("q", "v", "a", "tau"))
-    moving = [name not in agent.pinned for name in list(agent.model.names)[1:]]
+    moving = [name not in agent.locked_joints for name in list(agent.model.names)[1:]]
     # What follows from the motion and the forces is computed again rather than stored.
     return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force, moment), tau=tau)
 

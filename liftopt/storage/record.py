@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Check
 from liftopt.solution.finding import SUBJECTS, Assessment, Finding
-from liftopt.solution.infeasibility_report import Obstacle, Remedy
+from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
 from liftopt.solution.solution import StartRecord
 
 T = TypeVar("T")
@@ -32,7 +32,7 @@ class Record:
     notes: tuple[str, ...]
     accuracy: Accuracy | None
     reasons: tuple[Obstacle, ...]
-    remedies: tuple[Remedy, ...]
+    suggested_changes: tuple[SuggestedChange, ...]
 
 
 def read_record(text: str) -> Record:
@@ -56,7 +56,7 @@ def read_record(text: str) -> Record:
         notes=tuple(_of("notes", note, str) for note in _of("notes", read["notes"], list)),
         accuracy=None if accuracy is None else _entry(Accuracy, accuracy),
         reasons=_entries(Obstacle, read.get("reasons", [])),
-        remedies=_entries(Remedy, read.get("remedies", [])),
+        suggested_changes=_entries(SuggestedChange, read.get("remedies", [])),
     )
     if not record.checks:
         raise ValueError("no check is recorded")

@@ -103,7 +103,7 @@ def _coordinates(solution: Solution) -> dict[str, tuple[str, ...]]:
 
 
 def _variables(solution: Solution) -> dict[str, Variable]:
-    held, name = solution.held, solution.held.name
+    held, name = solution.object, solution.object.name
     variables: dict[str, Variable] = {"time": (("time",), solution.time, "s", "time of the knots")}
     for agent in solution.agents:
         dimensions = ("time", f"{agent.name}_joint")
@@ -162,7 +162,7 @@ def record(solution: Solution) -> dict[str, Any]:
         "notes": solution.notes,
         "accuracy": None if solution.accuracy is None else accuracy_record(solution.accuracy),
         "reasons": [asdict(reason) | {"amount": _finite(reason.amount)} for reason in solution.reasons],
-        "remedies": [asdict(remedy) for remedy in solution.remedies],
+        "remedies": [asdict(change) for change in solution.suggested_changes],
     }
 
 

@@ -19,10 +19,10 @@ from liftopt.collocation.motion import objective_terms
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
 from liftopt.scenario.model import Objective, Scenario
-from liftopt.search.candidate import Plan
+from liftopt.search.candidate import Candidate
 from liftopt.solution.summary import shares
 
-Say = Callable[[str], None]
+Progress = Callable[[str], None]
 DECADES = 4.0  # that the ratio of the weights runs over
 # Where a warm solve across a step in weights fails, it is tried in two halves, this often.
 HALVINGS = 2
@@ -39,13 +39,13 @@ class Point:
         weights: of the person's and the robot's squared torques.
         efforts: the person's and the robot's integral of squared torques [N^2 m^2 s].
         share: mean part of the vertical grasp force that the person carries.
-        plan: the lift, verified.
+        candidate: the lift, verified.
     """
 
     weights: tuple[float, float]
     efforts: tuple[float, float]
     share: float
-    plan: Plan
+    candidate: Candidate
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Front:
     missing: tuple[tuple[float, float], ...]
 
 
-def pareto_front(scenario: Scenario, count: int = 11, say: Say | None = None) -> Front:
+def pareto_front(scenario: Scenario, count: int = 11, progress: Progress | None = None) -> Front:
     """Return the front of a scenario from ``count`` ratios of the weights, evenly spaced in their logarithm.
 
     Raises:
@@ -78,10 +78,10 @@ def pareto_front(scenario: Scenario, count: int = 11, say: Say | None = None) ->
     if total == 0:
         raise InputError("objective.human_weight", 0.0, "one of human_weight and robot_weight must be above 0")
     logs = np.linspace(DECADES / 2, -DECADES / 2, count).tolist()  # of human over robot
-    walk = _Walk(scenario, total, logs, Replanner(say), say or (lambda line: None))
-    plans = walk.best()
-    points = [_point(plan) for plan in plans if plan is not None and plan.solved]
-    missing = [weights_at(total, log) for log, p in zip(logs, plans, strict=True) if p is None or not p.solved]
+    walk = _Walk(scenario, total, logs, Replanner(progress), progress or (lambda line: None))
+    candidates = walk.best()
+    points = [_point(candidate) for candidate in candidates if candidate is not None and candidate.solved]
+    missing = [weights_at(total, log) for log, p in zip(logs, candidates, strict=True) if p is None or not p.solved]
     dominated = [point for point in points if any(_beats(other, point) for other in points)]
     kept = sorted((point for point in points if point not in dominated), key=lambda point: point.efforts)
     return Front(scenario, tuple(kept), tuple(dominated), tuple(missing))
@@ -96,11 +96,13 @@ def weights_at(total: float, log: float) -> tuple[float, float]:
 class _Walk:
     """The best plan so far for every ratio, and the ways between them."""
 
-    def __init__(self, scenario: Scenario, total: float, logs: Sequence[float], replanner: Replanner, say: Say) -> None:
-        self.scenario, self.total, self.logs, self.replanner, self.say = scenario, total, logs, replanner, say
-        self.plans: list[Plan | None] = [None] * len(logs)
+    def __init__(
+        self, scenario: Scenario, total: float, logs: Sequence[float], replanner: Replanner, progress: Progress
+    ) -> None:
+        self.scenario, self.total, self.logs, self.replanner, self.progress = scenario, total, logs, replanner, progress
+        self.candidates: list[Candidate | None] = [None] * len(logs)
 
-    def best(self) -> list[Plan | None]:
+    def best(self) -> list[Candidate | None]:
         """Return the best plan found for each ratio."""
         last = len(self.logs) - 1
         for i in sorted({0, last // 2, last}):
@@ -111,11 +113,11 @@ class _Walk:
         for _ in range(ROUNDS):
             if not (self._polish(range(last), 1) + self._polish(range(last, 0, -1), -1)):
                 break
-        return self.plans
+        return self.candidates
 
-    def _search(self, i: int) -> Plan | None:
+    def _search(self, i: int) -> Candidate | None:
         """Return the best of several starts at one ratio."""
-        self.say(f"searching at weights {ratio_text(weights_at(self.total, self.logs[i]))}")
+        self.progress(f"searching at weights {ratio_text(weights_at(self.total, self.logs[i]))}")
         self.replanner.latest = None
         self.replanner.solve(self._scenario(self.logs[i]), cold=True)
         found, options = self.replanner.latest, self.scenario.solver
@@ -124,44 +126,44 @@ class _Walk:
         # It took a finer mesh, and objectives compare on one mesh only: all begin again there.
         finer, enough = replace(options, intervals=found.spline.intervals), replace(self.scenario.refine, on=False)
         self.scenario = replace(self.scenario, solver=finer, refine=enough)
-        self.plans = [None] * len(self.plans)
+        self.candidates = [None] * len(self.candidates)
         return self._search(i)
 
-    def _follow(self, plan: Plan, path: range, step: int) -> None:
+    def _follow(self, candidate: Candidate, path: range, step: int) -> None:
         """Take one optimum along through the weights, whatever else is known there."""
         for i in path:
-            there = self._warm(plan, self.logs[i], self.logs[i + step])
+            there = self._warm(candidate, self.logs[i], self.logs[i + step])
             if there is None:
                 return
             self._keep(i + step, there)
-            plan = there
+            candidate = there
 
     def _polish(self, path: range, step: int) -> int:
         """Start every solve from its best neighbour; return how many it made better."""
         gained = 0
         for i in path:
-            plan = self.plans[i]
-            there = None if plan is None else self._warm(plan, self.logs[i], self.logs[i + step])
+            candidate = self.candidates[i]
+            there = None if candidate is None else self._warm(candidate, self.logs[i], self.logs[i + step])
             gained += there is not None and self._keep(i + step, there)
         return gained
 
-    def _warm(self, plan: Plan, log: float, onto: float, halvings: int = HALVINGS) -> Plan | None:
-        self.say(f"following an optimum to weights {ratio_text(weights_at(self.total, onto))}")
-        self.replanner.latest = plan
+    def _warm(self, candidate: Candidate, log: float, onto: float, halvings: int = HALVINGS) -> Candidate | None:
+        self.progress(f"following an optimum to weights {ratio_text(weights_at(self.total, onto))}")
+        self.replanner.latest = candidate
         there = self.replanner.replan(self._scenario(onto))
         if there is not None or halvings == 0:
             return there
         middle = (log + onto) / 2
-        between = self._warm(plan, log, middle, halvings - 1)
+        between = self._warm(candidate, log, middle, halvings - 1)
         return None if between is None else self._warm(between, middle, onto, halvings - 1)
 
-    def _keep(self, i: int, plan: Plan) -> bool:
-        known = self.plans[i]
-        if known is not None and plan.result.objective > (1 - BETTER) * known.result.objective:
+    def _keep(self, i: int, candidate: Candidate) -> bool:
+        known = self.candidates[i]
+        if known is not None and candidate.result.objective > (1 - BETTER) * known.result.objective:
             return False
-        if not plan.solved:
+        if not candidate.solved:
             return False
-        self.plans[i] = plan
+        self.candidates[i] = candidate
         return True
 
     def _scenario(self, log: float) -> Scenario:
@@ -170,13 +172,13 @@ class _Walk:
         return replace(self.scenario, objective=objective)
 
 
-def _point(plan: Plan) -> Point:
-    motion = plan.at(plan.spline.phase * plan.problem.task.duration)
-    terms, objective = objective_terms(motion), plan.scenario.objective
+def _point(candidate: Candidate) -> Point:
+    motion = candidate.at(candidate.spline.phase * candidate.problem.task.duration)
+    terms, objective = objective_terms(motion), candidate.scenario.objective
     human, robot = motion.agents
     share = float(np.nanmean(shares(motion.agents)[0]))
     efforts = (terms[human.name], terms[robot.name])
-    return Point((objective.human_weight, objective.robot_weight), efforts, share, plan)
+    return Point((objective.human_weight, objective.robot_weight), efforts, share, candidate)
 
 
 def _beats(one: Point, other: Point) -> bool:

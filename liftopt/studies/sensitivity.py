@@ -23,8 +23,8 @@ from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
 from liftopt.scenario.model import Scenario, scenario_to_dict, with_overrides
-from liftopt.search.cache import Workshop
-from liftopt.search.candidate import Plan
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
 from liftopt.solution.summary import limit_share, shares
 
@@ -104,7 +104,7 @@ class Study:
     """What a lift depends on.
 
     Attributes:
-        plan: the lift.
+        candidate: the lift.
         figures: their values: ``"objective"``, ``"effort <agent>"`` [N^2 m^2 s], ``"share <agent>"``, the mean part of
             the vertical grasp force, ``"peak <joint>"`` [Nm], the size of a joint's largest torque, and
             ``"used <joint>"``, its largest share of the limit in its direction; both between knots too.
@@ -113,7 +113,7 @@ class Study:
         left_out: parameter and why, of those that the scenario does not let change.
     """
 
-    plan: Plan
+    candidate: Candidate
     figures: dict[str, float]
     busiest: tuple[str, ...]
     sensitivities: tuple[Sensitivity, ...]
@@ -121,23 +121,23 @@ class Study:
 
 
 def study(
-    plan: Plan,
-    workshop: Workshop,
+    candidate: Candidate,
+    cache: SolverCache,
     parameters: Sequence[Parameter] = PARAMETERS,
-    say: Callable[[str], None] | None = None,
+    progress: Callable[[str], None] | None = None,
 ) -> Study:
     """Return what a plan depends on.
 
     Args:
-        plan: solved, to a tolerance far below what a change does.
-        workshop: that it comes from.
+        candidate: solved, to a tolerance far below what a change does.
+        cache: that it comes from.
         parameters: to look at.
-        say: hears one line at a time.
+        progress: hears one line at a time.
 
     Raises:
         SolverError: kernels cannot be had.
     """
-    return _Differences(plan, workshop).study(parameters, say or (lambda line: None))
+    return _Differences(candidate, cache).study(parameters, progress or (lambda line: None))
 
 
 def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario:
@@ -153,9 +153,9 @@ def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario
     return with_overrides(scenario, [f"{key}={float(value + change)!r}" for key, value in values.items()])
 
 
-def figures(plan: Plan) -> dict[str, float]:
+def figures(candidate: Candidate) -> dict[str, float]:
     """Return ``Study.figures`` of a plan."""
-    problem, spline, x = plan.problem, plan.spline, plan.result.x
+    problem, spline, x = candidate.problem, candidate.spline, candidate.result.x
     motion = motion_at(problem, spline, x, spline.phase)
     terms, weights = objective_terms(motion), objective_weights(problem)
     found = {"objective": sum(weights[name] * value for name, value in terms.items())}
@@ -182,23 +182,23 @@ class _Sides:
 class _Differences:
     """Central differences around one plan."""
 
-    def __init__(self, plan: Plan, workshop: Workshop) -> None:
-        self.plan, self.workshop, self.replanner = plan, workshop, Replanner(workshop=workshop)
-        self.optimum = Optimum(plan.problem, plan.result.x, plan.result.multipliers)
-        self.now = figures(plan)
-        joints = [agent.moving_joints for agent in plan.problem.team.agents]
+    def __init__(self, candidate: Candidate, cache: SolverCache) -> None:
+        self.candidate, self.cache, self.replanner = candidate, cache, Replanner(cache=cache)
+        self.optimum = Optimum(candidate.problem, candidate.result.x, candidate.result.multipliers)
+        self.now = figures(candidate)
+        joints = [agent.moving_joints for agent in candidate.problem.team.agents]
         self.busiest = tuple(max(names, key=lambda name: self.now[f"used {name}"]) for names in joints)
         # Judged: what the table tells. Of these the first change relative to what they are, the others as they are.
         self.relative = [name for name in self.now if name.startswith(("objective", "effort"))]
         carried = [name for name in self.now if name.startswith("share")]
         self.told = [*self.relative, *carried, *(f"used {name}" for name in self.busiest)]
 
-    def study(self, parameters: Sequence[Parameter], say: Callable[[str], None]) -> Study:
+    def study(self, parameters: Sequence[Parameter], progress: Callable[[str], None]) -> Study:
         """Return what the plan depends on."""
         found, left_out = [], []
         for parameter in parameters:
-            say(f"sensitivity to {parameter.name}")
-            value = _value(self.plan.scenario, parameter.keys[0])
+            progress(f"sensitivity to {parameter.name}")
+            value = _value(self.candidate.scenario, parameter.keys[0])
             if not isinstance(value, float):
                 left_out.append((parameter, f"{parameter.keys[0]} is {value}"))
                 continue
@@ -206,7 +206,7 @@ class _Differences:
                 found.append(self._sensitivity(parameter, value))
             except InputError as error:
                 left_out.append((parameter, str(error)))
-        return Study(self.plan, self.now, self.busiest, tuple(found), tuple(left_out))
+        return Study(self.candidate, self.now, self.busiest, tuple(found), tuple(left_out))
 
     def _sensitivity(self, parameter: Parameter, value: float) -> Sensitivity:
         tangent = self._tangent(parameter, value)
@@ -240,23 +240,23 @@ class _Differences:
     def _tangent(self, parameter: Parameter, value: float) -> Tangent:
         step = STEP * max(abs(value), SMALLEST)
         before, after = (
-            self.workshop.problem(changed(self.plan.scenario, parameter, change), self.plan.spline)
+            self.cache.problem(changed(self.candidate.scenario, parameter, change), self.candidate.spline)
             for change in (-step, step)
         )
         return self.optimum.tangent(before, after, step)
 
     def _sides(self, parameter: Parameter, step: float, tangent: Tangent) -> _Sides | str:
         """Return the figures of the lift solved again on both sides, or why they cannot be had."""
-        found, control = [], self.plan.problem.layout.control
+        found, control = [], self.candidate.problem.layout.control
         for change in (-step, step):
-            self.replanner.latest = self.plan
-            plan = self.replanner.replan(changed(self.plan.scenario, parameter, change))
-            moved = 0.0 if plan is None else np.abs(plan.result.x - self.plan.result.x)[control].max()
+            self.replanner.latest = self.candidate
+            candidate = self.replanner.replan(changed(self.candidate.scenario, parameter, change))
+            moved = 0.0 if candidate is None else np.abs(candidate.result.x - self.candidate.result.x)[control].max()
             if moved > ELSEWHERE + FURTHER * step * np.abs(tangent.x[control]).max():
                 return f"with {change:+g} {parameter.unit} the motion jumps to another optimum"
-            if plan is None or not plan.solved:
+            if candidate is None or not candidate.solved:
                 return f"with {change:+g} {parameter.unit} no verified lift is found from this one"
-            found.append(figures(plan))
+            found.append(figures(candidate))
         return _Sides(*found)
 
     def _doubt(self, step: float, sides: _Sides, halves: _Sides, parameter: Parameter, tangent: Tangent) -> str:

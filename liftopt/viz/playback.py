@@ -85,7 +85,7 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
         zero |= {
             name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
         }
-    held = solution.held
+    held = solution.object
     pose = motion_between(knots, held.pose, held.pose_velocity, held.pose_acceleration, time)[0]
     bodies[held.name] = _track([_object_placement(row) for row in pose])
     zero[held.name] = np.eye(4)
@@ -93,7 +93,7 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
 
 
 def _check(solution: Solution) -> None:
-    name, held = solution.scenario.name, solution.held
+    name, held = solution.scenario.name, solution.object
     shown = [solution.time, held.pose, held.pose_velocity, held.pose_acceleration]
     shown += [values for agent in solution.agents for values in (agent.q, agent.v, agent.a, agent.grasp_force)]
     if not all(np.isfinite(values).all() for values in shown):

@@ -66,11 +66,11 @@ def ground_reaction(lift: Lift) -> Figure:
 
 def object_motion(lift: Lift) -> Figure:
     """Return the object's height, its pitch and yaw, and its speed."""
-    solution, pose = lift.dense, lift.dense.held.pose
+    solution, pose = lift.dense, lift.dense.object.pose
     figure, grid = panels(3, height=1.1)
     height, turn, speed = (line[0] for line in grid)
     draw(height, solution.time, pose[:, 2], LINES[0], knots=lift.factor)
-    height.set(title=f"Height of the {solution.held.name}'s centre of mass", ylabel="height of centre [m]")
+    height.set(title=f"Height of the {solution.object.name}'s centre of mass", ylabel="height of centre [m]")
     limits = solution.scenario.limits
     for column, line, name, limit in (
         (4, LINES[0], "pitch, + the robot's side down", limits.table_pitch_deg),
@@ -80,7 +80,7 @@ def object_motion(lift: Lift) -> Figure:
     turn.set(title="Tilt", ylabel="angle [deg]")
     turn.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
     legend_above(turn, 2, 0.3)
-    draw(speed, solution.time, np.linalg.norm(solution.held.velocity[:, :3], axis=1), LINES[0], knots=lift.factor)
+    draw(speed, solution.time, np.linalg.norm(solution.object.velocity[:, :3], axis=1), LINES[0], knots=lift.factor)
     speed.set(title="Speed of its centre of mass", ylabel="speed [m/s]")
     time_axes(grid, float(solution.time[-1]))
     return figure
@@ -90,7 +90,7 @@ def _moments(axes: Axes, lift: Lift, agents: list[AgentTrajectory]) -> None:
     for agent, line in zip(agents, LINES, strict=False):
         magnitude = np.linalg.norm(agent.grasp_moment, axis=1)
         draw(axes, lift.dense.time, magnitude, line, f"{agent.name} (cap {agent.grasp.max_moment:g} Nm)", lift.factor)
-    axes.set(title=f"Moment of the hands on the {lift.dense.held.name}, magnitude", ylabel="moment [Nm]")
+    axes.set(title=f"Moment of the hands on the {lift.dense.object.name}, magnitude", ylabel="moment [Nm]")
     legend_above(axes, 2)
 
 
@@ -104,7 +104,7 @@ def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> N
     if magnitude.max() > 0.6 * cap:
         axes.axhline(cap, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)))
     axes.set_title(
-        f"Force of the {'person' if agent.name == 'human' else agent.name} on the {lift.dense.held.name}: "
+        f"Force of the {'person' if agent.name == 'human' else agent.name} on the {lift.dense.object.name}: "
         f"at most {magnitude.max():.0f} N (cap {cap:g} N)"
     )
     axes.set_ylabel("force [N]")

@@ -20,7 +20,7 @@ def sensitivity_figure(study: Study) -> Figure:
     figure = Figure(figsize=(WIDTH, height))
     figure.subplots_adjust(left=0.26, right=0.98, top=1 - 0.3 / height, bottom=0.6 / height, wspace=0.12)
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=(2, 1))
-    human, robot = (agent.name for agent in study.plan.problem.team.agents)
+    human, robot = (agent.name for agent in study.candidate.problem.team.agents)
     panels = (
         (left, (("effort " + human, BLUE, "person's effort", 0.2), ("effort " + robot, VERMILION, "robot's", -0.2))),
         (right, (("share " + human, BLUE, None, 0.0),)),

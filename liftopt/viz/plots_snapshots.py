@@ -45,7 +45,7 @@ def snapshots(lift: Lift) -> Figure:
     figure = Figure(figsize=(12.0, 2.6))
     figure.subplots_adjust(left=0.005, right=0.995, top=0.9, bottom=0.13, wspace=0.02)
     panels = figure.subplots(1, len(MOMENTS), sharex=True, sharey=True)
-    path = solution.held.grasp_position[:, 0]
+    path = solution.object.grasp_position[:, 0]
     bodies = _bodies(lift)
     key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in solution.agents))
     for axes, moment in zip(panels, MOMENTS, strict=True):
@@ -65,7 +65,7 @@ def snapshots(lift: Lift) -> Figure:
     reach = float(solution.agents[1].grasp_position[:, 0].max())
     panels[0].set_xlim(-0.35, max(reach, solution.scenario.task.standing_distance) + 0.4)
     panels[0].set_ylim(-0.16, max(solution.scenario.human.stature, 1.7) + HEADROOM)
-    _key(figure, panels[0], key, solution.held.name)
+    _key(figure, panels[0], key, solution.object.name)
     return figure
 
 
@@ -90,7 +90,7 @@ def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
     """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
     solution = lift.dense
     held = object_of(solution.scenario, solution.urdfs)
-    poses = np.hstack([solution.held.pose[:, :3], solution.held.quaternion])
+    poses = np.hstack([solution.object.pose[:, :3], solution.object.quaternion])
     models = [
         *((agent.model, agent.urdf) for agent in agents_of(solution.scenario, solution.urdfs)),
         (held.model, held.urdf),

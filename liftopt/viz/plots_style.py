@@ -90,15 +90,15 @@ def panels(rows: int, columns: int = 1, height: float = 1.0, left: float = 0.62,
     """
     top, bottom, between, beside = 0.62, 0.44, 0.36, 0.66
     total = top + bottom + rows * height + (rows - 1) * between
-    wide = (WIDTH - left - right - (columns - 1) * beside) / columns
+    simd = (WIDTH - left - right - (columns - 1) * beside) / columns
     figure = Figure(figsize=(WIDTH, total))
     figure.subplots_adjust(
         left=left / WIDTH, right=1 - right / WIDTH, top=1 - top / total, bottom=bottom / total,
-        hspace=between / height, wspace=beside / wide,
+        hspace=between / height, wspace=beside / simd,
     )  # fmt: skip
     grid = [list(line) for line in figure.subplots(rows, columns, sharex=True, squeeze=False)]
     for axes in (axes for line in grid for axes in line):
-        axes.yaxis.set_label_coords(-0.44 / wide, 0.5)
+        axes.yaxis.set_label_coords(-0.44 / simd, 0.5)
     return figure, grid
 
 

@@ -108,7 +108,7 @@ def parts_of(cast: Cast) -> list[Part]:
     scenario = cast.solution.scenario
     robot, table = scenario.robot, scenario.table
     world_base = translation(scenario.task.standing_distance, 0.0, robot.base_height) @ rotation_z(np.pi)
-    name = cast.solution.held.name
+    name = cast.solution.object.name
     size = (table.depth, table.width, table.height)
     if cast.sawyer is None:
         arm = sawyer_parts(world_base, robot.base_height)
@@ -123,7 +123,7 @@ def parts_of(cast: Cast) -> list[Part]:
 
 
 def _stands_still(part: Part, cast: Cast) -> bool:
-    if part.body in (GROUND, cast.solution.held.name):
+    if part.body in (GROUND, cast.solution.object.name):
         return part.body == GROUND
     return bool(np.ptp(cast.playback.bodies[part.body].position, axis=0).max() < SAME)
 

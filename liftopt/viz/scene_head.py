@@ -16,14 +16,14 @@ TO_SIDE = (0.0, 1.0, 0.0)
 def head_parts(subject: Subject, body: str, skin: Colour) -> list[Part]:
     """Return neck, head, hair, eyes and brows in the world at the upright zero pose, all on ``body``."""
     at, lengths = landmarks(subject), link_lengths(subject)
-    wide, deep = dimension(subject, "headbreadth") / 2.0, dimension(subject, "headlength") / 2.0
+    simd, deep = dimension(subject, "headbreadth") / 2.0, dimension(subject, "headlength") / 2.0
     height = SEGMENTS[subject.sex]["head"].length * subject.stature
     chin, neck = at.vertex - 1.05 * height, girth_radius(subject, "neckcircumference")
     ahead = 0.012
 
     def ring(share: float, across: float, along: float, forward: float) -> Ring:
         """Return a section at ``share`` of the way from chin to vertex."""
-        return Ring((ahead + forward, 0.0, chin + share * (at.vertex - chin)), across * wide, along * deep, 2.2)
+        return Ring((ahead + forward, 0.0, chin + share * (at.vertex - chin)), across * simd, along * deep, 2.2)
 
     skull = [
         ring(0.00, 0.34, 0.26, 0.052),
@@ -42,7 +42,7 @@ def head_parts(subject: Subject, body: str, skin: Colour) -> list[Part]:
     ]
 
     def face(share: float, forward: float, side: float = 0.0) -> tuple[float, float, float]:
-        return (ahead + forward * deep, side * wide, chin + share * (at.vertex - chin))
+        return (ahead + forward * deep, side * simd, chin + share * (at.vertex - chin))
 
     nose = capsule(face(0.47, 0.97), face(0.33, 1.10), 0.007, 0.012)
     ears = [ball(face(0.44, -0.02, side * 0.99), (0.017, 0.008, 0.031)) for side in (-1.0, 1.0)]

@@ -94,8 +94,8 @@ def _shoe(subject: Subject, y: float) -> tuple[Mesh, Mesh]:
     length, breadth = dimension(subject, "footlength") * SLACK, dimension(subject, "footbreadthhorizontal") / 2.0
     heel, ankle, sole = -HEEL_BEHIND_ANKLE * length, landmarks(subject).ankle, 0.018
 
-    def ring(share: float, wide: float, height: float) -> Ring:
-        return Ring((heel + share * length, y, sole + height / 2.0), wide * breadth, height / 2.0, 2.6)
+    def ring(share: float, simd: float, height: float) -> Ring:
+        return Ring((heel + share * length, y, sole + height / 2.0), simd * breadth, height / 2.0, 2.6)
 
     upper = [ring(0.03, 0.55, 0.6 * ankle), ring(0.15, 0.72, 1.05 * ankle), ring(0.30, 0.74, 1.12 * ankle)]
     upper += [ring(0.50, 0.86, 0.85 * ankle), ring(0.72, 1.0, 0.58 * ankle), ring(0.95, 0.72, 0.42 * ankle)]

@@ -20,7 +20,7 @@ def view(
     sawyer: str | Path | None = None,
     port: int = FIRST_PORT,
     browser: bool = True,
-    say: Callable[[str], None] = print,
+    progress: Callable[[str], None] = print,
 ) -> None:
     """Play a result in the browser until Ctrl-C, or write the playback to a file.
 
@@ -32,7 +32,7 @@ def view(
         sawyer: the manufacturer's ``sawyer_description`` folder, for its meshes in place of our primitives.
         port: first port to try.
         browser: open the page in the user's browser.
-        say: where to tell the user about the page.
+        progress: where to tell the user about the page.
 
     Raises:
         InputError: a result cannot be read, or the file cannot be written; it says which and why.
@@ -46,12 +46,12 @@ def view(
         found.check()  # trimesh swallows one while it tries its imports
     if html is not None:
         _write(Path(html), page)
-        say(f"Written to {html}: {len(page.encode('utf-8')) / 1e6:.1f} MB, complete in itself")
+        progress(f"Written to {html}: {len(page.encode('utf-8')) / 1e6:.1f} MB, complete in itself")
         return
     with PageServer(page, port) as server, suppress(KeyboardInterrupt):
-        say(f"Playing at {server.url} (Ctrl-C ends it)")
+        progress(f"Playing at {server.url} (Ctrl-C ends it)")
         if browser and not opened(server.url):
-            say("No browser could be opened here: open this address in one.")
+            progress("No browser could be opened here: open this address in one.")
         server.serve_forever(poll_interval=0.2)
 
 

@@ -106,7 +106,7 @@ def _facts(cast: Cast, name: str) -> dict[str, Any]:
         "head": [0.0, cast.offset[1], solution.scenario.human.stature + ABOVE_HEAD],
         "time": np.round(playback.time, 5).tolist(),
         "force": sizes,
-        "height": np.round(playback.bodies[solution.held.name].position[:, 2], 4).tolist(),
+        "height": np.round(playback.bodies[solution.object.name].position[:, 2], 4).tolist(),
     }
 
 

@@ -16,8 +16,8 @@ from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
 from liftopt.scenario.model import Scenario
-from liftopt.search.cache import Workshop
-from liftopt.search.initial_guess import blend, naive_start
+from liftopt.search.cache import SolverCache
+from liftopt.search.initial_guess import blend, naive_guess
 from liftopt.search.postures import Posture
 from liftopt.solution.verify import verify
 
@@ -55,11 +55,11 @@ class Case:
 
     def from_zero(self) -> Case:
         """Return the case with the paper's guess as its start: control points 0, forces 10 N."""
-        return replace(self, start=naive_start(self.problem).x)
+        return replace(self, start=naive_guess(self.problem).x)
 
     def solver(self, name: str) -> Solver:
         """Return a new solver for the problem, set up as ``liftopt solve`` does."""
-        return Workshop().solver(self.problem, self.scenario, name)
+        return SolverCache().solver(self.problem, self.scenario, name)
 
     def solve(self, solver: Any, **more: Any) -> SolverResult:
         """Solve from the start; ``more`` goes to the solver's ``solve``."""

@@ -101,7 +101,7 @@ def _run(lift: dict[str, Any], seconds: float) -> dict[str, Any]:
 
 def describe(case: Case) -> dict[str, Any]:
     """Return a lift and its start as plain numbers; SI, world axes or those of the body."""
-    problem, task, held = case.problem, case.problem.task, case.problem.team.held
+    problem, task, held = case.problem, case.problem.task, case.problem.team.object
     phase = np.linspace(0.0, 1.0, 2 * case.spline.intervals + 1)  # Moco's knots and the points midway
     motion = motion_at(problem, case.spline, case.start, phase)
     grasps = [held.model.frames[held.model.getFrameId(name)].placement.translation for name in held.grasp_frames]
@@ -163,9 +163,9 @@ def _coordinates(case: Case, motion: Motion) -> list[dict[str, Any]]:
                 "range": [task.pose_lower[i], task.pose_upper[i]],
                 "speed": task.pose_velocity[i],
                 "ends": ends,
-                "q": motion.held.pose[:, i].tolist(),
-                "v": motion.held.pose_velocity[:, i].tolist(),
-                "a": motion.held.pose_acceleration[:, i].tolist(),
+                "q": motion.object.pose[:, i].tolist(),
+                "v": motion.object.pose_velocity[:, i].tolist(),
+                "a": motion.object.pose_acceleration[:, i].tolist(),
             }
         )
     return found

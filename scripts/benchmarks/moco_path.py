@@ -47,7 +47,7 @@ def on_our_models(case: Case, found: dict[str, Any]) -> OnOurModels:
     problem = case.problem
     agents, time = problem.team.agents, np.array(found["time"])
     served = np.ones(OBJECT_SIZE, bool)
-    row = problem.team.held.unserved_row()
+    row = problem.team.object.unserved_row()
     if row is not None:
         served[row] = False
     wanted = [_columns(found["torques"], agent.moving_joints) for agent in agents]
@@ -58,8 +58,8 @@ def on_our_models(case: Case, found: dict[str, Any]) -> OnOurModels:
             agent_trajectory(agent, *(_columns(found[kind], agent.moving_joints) for kind in RATES), forces[:, i])
             for i, agent in enumerate(agents)
         ]
-        names = [f"{problem.team.held.name}_{name}" for name in OBJECT_COORDINATES]
-        return moved, object_trajectory(problem.team.held, *(_columns(found[kind], names) for kind in RATES), forces)
+        names = [f"{problem.team.object.name}_{name}" for name in OBJECT_COORDINATES]
+        return moved, object_trajectory(problem.team.object, *(_columns(found[kind], names) for kind in RATES), forces)
 
     def off(force: Array) -> Array:
         moved, held = move(force)
@@ -95,8 +95,8 @@ def _excesses(case: Case, moved: list[AgentTrajectory]) -> Iterator[Array]:
         tau, limits = agent.tau[:, agent.moving], agent.limits
         yield np.maximum(limits.tau_lower - tau, tau - limits.tau_upper)
         yield np.linalg.norm(agent.grasp_force, axis=1) - case.problem.task.max_grasp_force
-        if model.keep_in is not None:
-            yield model.keep_in.offset - agent.grasp_position @ model.keep_in.normal
+        if model.workspace is not None:
+            yield model.workspace.offset - agent.grasp_position @ model.workspace.normal
 
 
 def _fitted(off: Any, times: int, size: int) -> Array:

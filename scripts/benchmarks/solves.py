@@ -16,7 +16,7 @@ from liftopt.collocation.spline import FEWEST
 from liftopt.control.replanning import Replanner
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.model import Scenario, with_overrides
-from liftopt.search.cache import Workshop
+from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Plan
 from liftopt.search.mesh_refinement import meshes_below, neighbour
 
@@ -141,14 +141,14 @@ def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Pla
         the times of all together, and the optimum on the last; None where one mesh has none.
     """
     coarsest, *finer = (n for n in (*meshes_below(intervals), intervals) if n >= FEWEST)
-    case, workshop = Case.of(varied.scenario(), varied.ends, coarsest), Workshop()
+    case, cache = Case.of(varied.scenario(), varied.ends, coarsest), SolverCache()
     solver = case.solver("banded")
 
     def solve() -> Plan | None:
         result = case.solve(solver)
         plan = Plan(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
         for n in finer:
-            plan = plan and neighbour(workshop, plan, n, ("banded",), time.monotonic() + PATIENCE, print)
+            plan = plan and neighbour(cache, plan, n, ("banded",), time.monotonic() + PATIENCE, print)
         return plan
 
     return repeat(repeats, solve)

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.case import Case
 from benchmarks.goals import Row
 from benchmarks.scenarios import PATIENT, REST, STARTS, varied_scenarios
-from liftopt.search.cache import Workshop
+from liftopt.search.cache import SolverCache
 from liftopt.search.solve import lift
 
 AS_GOOD = 1e-3  # relative
@@ -43,11 +43,11 @@ def first_try(count: int | None = None) -> tuple[Row, Row]:
 
 def objectives(name: str, count: int | None = None) -> Row:
     """Compare the best of eight starts with the best before the work on speed."""
-    workshop, ratios, seconds, unsolved = Workshop(), [], [], 0
+    cache, ratios, seconds, unsolved = SolverCache(), [], [], 0
     kept = [varied for varied in varied_scenarios() if varied.objective is not None][:count]
     for varied in kept:
         overrides = (f"solver.name={name}", f"solver.starts={STARTS}", PATIENT, REST)
-        solution = lift(varied.scenario(*overrides), workshop=workshop)
+        solution = lift(varied.scenario(*overrides), cache=cache)
         ratios.append(solution.objective / varied.objective if solution.solved and varied.objective else np.inf)
         seconds.append(solution.seconds["total"])
         unsolved += not solution.solved

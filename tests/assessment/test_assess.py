@@ -13,7 +13,7 @@ from liftopt.assessment.assess import assess
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import Assessment, Finding
-from liftopt.solution.infeasibility_report import Obstacle, Remedy
+from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
 from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 
@@ -189,13 +189,13 @@ def test_grasp_force_at_its_cap_is_a_caution_and_beyond_it_a_warning(light: Solu
 @pytest.mark.usefixtures("as_given")
 def test_a_tilt_that_is_at_its_limit_all_along_is_told_from_one_that_is_touched(light: Solution) -> None:
     limit = np.radians(light.scenario.limits.table_pitch_deg)
-    pose = light.held.pose.copy()
+    pose = light.object.pose.copy()
     pose[:, 4] = limit
-    (always,) = _of(assess(replace(light, held=replace(light.held, pose=pose))), "object.tilt")
+    (always,) = _of(assess(replace(light, object=replace(light.object, pose=pose))), "object.tilt")
     touched = pose.copy()
     touched[2:, 4:] = 0.0
     touched[:2, 5] = 0.0
-    (sometimes,) = _of(assess(replace(light, held=replace(light.held, pose=touched))), "object.tilt")
+    (sometimes,) = _of(assess(replace(light, object=replace(light.object, pose=touched))), "object.tilt")
     assert (always.severity, sometimes.severity) == ("caution", "info")
     assert "all along" in always.message
 
@@ -219,15 +219,15 @@ def test_an_iterate_is_not_judged_and_its_remedies_name_keys(light: Solution) ->
         light,
         outcome="infeasible: too far",
         reasons=(Obstacle("closure", "robot", 0.2, "m", "the robot's grasp stays 0.200 m short", 0.0),),
-        remedies=(Remedy(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),),
+        suggested_changes=(SuggestedChange(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),),
     )
     assessment = assess(failed)
     assert [finding.severity for finding in assessment.verdicts] == ["error"] * 3
     assert assessment[0].code == "verdict.mathematics"
     assert "infeasible: too far" in assessment[0].message
     assert not assessment.about("person") and not assessment.about("robot")
-    (remedy,) = _of(assessment, "mathematics.remedy")
-    assert "task.standing_distance = 1.80" in remedy.message
+    (change,) = _of(assessment, "mathematics.remedy")
+    assert "task.standing_distance = 1.80" in change.message
 
 
 def test_a_mesh_that_was_refined_is_said(solved: Callable[..., Any], light: Solution) -> None:

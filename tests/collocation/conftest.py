@@ -24,7 +24,7 @@ from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
-from liftopt.search.initial_guess import Start, posture_starts
+from liftopt.search.initial_guess import InitialGuess, posture_starts
 
 TEN_DEGREES = np.radians(10.0)
 
@@ -51,8 +51,8 @@ def chain_agent(seed: int, name: str = "arm") -> Agent:
     limits = JointLimits(
         -2.0 * np.ones(n), 2.5 * np.ones(n), 3.0 * np.ones(n), -np.arange(60.0, 100.0, 10.0), 80.0 * np.ones(n)
     )
-    keep_in = HalfSpace(np.array([0.6, 0.0, 0.8]), -5.0)
-    return Agent(name, "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), keep_in)
+    workspace = HalfSpace(np.array([0.6, 0.0, 0.8]), -5.0)
+    return Agent(name, "robot", "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), workspace)
 
 
 def box(grasps: np.ndarray, mass: float = 3.0) -> LiftedObject:
@@ -72,11 +72,11 @@ def turned(agent: Agent, angle: float, x: float) -> Agent:
     model = agent.model.copy()
     moved = pin.SE3(pin.utils.rotate("z", angle), np.array([x, 0.0, 0.0]))
     model.jointPlacements[1] = moved * model.jointPlacements[1]
-    keep_in = agent.keep_in
-    if keep_in is not None:
-        normal = moved.rotation @ keep_in.normal
-        keep_in = HalfSpace(normal, keep_in.offset + float(normal @ moved.translation))
-    return replace(agent, model=model, keep_in=keep_in, name=f"{agent.name}_turned")
+    workspace = agent.workspace
+    if workspace is not None:
+        normal = moved.rotation @ workspace.normal
+        workspace = HalfSpace(normal, workspace.offset + float(normal @ moved.translation))
+    return replace(agent, model=model, workspace=workspace, name=f"{agent.name}_turned")
 
 
 def level_task(agents: int = 2, x: float = 0.625, **changes: object) -> LiftTask:
@@ -244,7 +244,7 @@ def small_lift(team: Team) -> Problem:
 
 
 @pytest.fixture(scope="session")
-def starts(small_lift: Problem) -> list[Start]:
+def starts(small_lift: Problem) -> list[InitialGuess]:
     return posture_starts(small_lift, 2, 0, np.inf)
 
 
@@ -254,7 +254,7 @@ def ipopt(small_lift: Problem) -> Ipopt:
 
 
 @pytest.fixture(scope="session")
-def solved(ipopt: Ipopt, starts: list[Start]) -> SolverResult:
+def solved(ipopt: Ipopt, starts: list[InitialGuess]) -> SolverResult:
     return ipopt.solve(starts[0].x, deadline=np.inf)
 
 

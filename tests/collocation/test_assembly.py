@@ -99,13 +99,13 @@ class Plain:
 
     def grasp(self, i: int) -> np.ndarray:
         """Return the object's grasp point (K, 3) of an agent."""
-        held = self.problem.team.held
+        held = self.problem.team.object
         lever = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
         return np.array([self.q[k, -6:-3] + self.attitude(k) @ lever for k in range(len(self.phase))])
 
     def balance(self, newton_euler: Outputs) -> np.ndarray:
         """Return force and moment (K, 6) of Newton and Euler less the grasps'."""
-        held = self.problem.team.held
+        held = self.problem.team.object
         y = np.hstack([*(part[:, -6:] for part in (self.q, self.v, self.a)), self.force.reshape(len(self.q), -1)])
         return np.array([newton_euler(held.model, held.grasp_frames, row, 1.0)[:6] for row in y])
 
@@ -157,16 +157,16 @@ def test_rows_by_name(plain: tuple[Plain, np.ndarray, np.ndarray], newton_euler:
         np.testing.assert_allclose(speed, hull, atol=1e-11)
         np.testing.assert_allclose(block.upper.reshape(speed.shape)[0] / task.duration, agent.limits.velocity)
         np.testing.assert_array_equal(block.lower, -block.upper)
-        if agent.keep_in is not None:
+        if agent.workspace is not None:
             block, distance = rows_of(problem, g, "keep_in", agent.name)
-            np.testing.assert_allclose(distance.ravel(), point @ agent.keep_in.normal, atol=1e-12)
-            assert (block.lower == agent.keep_in.offset).all() and (block.upper == np.inf).all()
-    block, balance = rows_of(problem, g, "balance", problem.team.held.name)
+            np.testing.assert_allclose(distance.ravel(), point @ agent.workspace.normal, atol=1e-12)
+            assert (block.lower == agent.workspace.offset).all() and (block.upper == np.inf).all()
+    block, balance = rows_of(problem, g, "balance", problem.team.object.name)
     served = [0, 1, 2, 4, 5]
     assert block.labels == ("force x", "force y", "force z", "moment y", "moment z")
     np.testing.assert_allclose(balance, reference.balance(newton_euler)[:, served], atol=1e-10)
     assert not block.lower.any() and not block.upper.any()
-    block, speed = rows_of(problem, g, "velocity", problem.team.held.name)
+    block, speed = rows_of(problem, g, "velocity", problem.team.object.name)
     np.testing.assert_allclose(speed, reference.spline.derivative().c[1:9, -6:], atol=1e-11)
     np.testing.assert_allclose(block.upper, task.duration * np.tile(task.pose_velocity, len(speed)))
 
@@ -236,7 +236,7 @@ def test_parameters_alone_change_subject_weights_and_period(
     one = Problem(arm_team, make_task(), RestToRestSpline(6).mesh())
     heavy = make_box(np.array([[-0.35, 0.01, -0.06], [0.3, 0.01, -0.06]]), 8.0)
     topology = Topology.of(heavy.model, heavy.grasp_frames)
-    team = replace(arm_team, held=heavy, topologies=(*arm_team.topologies[:-1], topology))
+    team = replace(arm_team, object=heavy, topologies=(*arm_team.topologies[:-1], topology))
     other = Problem(team, make_task(duration=3.1, acceleration_weight=2.0, force_weight=0.3, agent_weights=(0.2, 4.0)),
                     RestToRestSpline(6).mesh())  # fmt: skip
     x = random_unknowns(one, rng)

@@ -12,7 +12,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.model import load_scenario
 from liftopt.search.feasibility_screen import screen
-from liftopt.search.initial_guess import naive_start
+from liftopt.search.initial_guess import naive_guess
 
 N = 10
 STILL = ("task.end.height=0.92", "duration=10")
@@ -25,7 +25,7 @@ def _problem(*overrides: str) -> Problem:
 
 def test_a_lift_that_is_possible_breaks_nothing_and_meets_every_row() -> None:
     problem = _problem()
-    found = elastic(problem, naive_start(problem).x, np.inf)
+    found = elastic(problem, naive_guess(problem).x, np.inf)
     assert found.converged and found.violations == ()
     g = Batch(problem).rows(found.x[None])[0]
     assert (problem.constraints.lower - g).max() < 1e-3
@@ -36,7 +36,7 @@ def test_a_lift_that_is_possible_breaks_nothing_and_meets_every_row() -> None:
 def test_grasps_lack_half_the_weight_less_their_cap(cap: float, mass: float) -> None:
     """Two hands at the edges of a level body that hardly moves carry half its weight each."""
     problem = _problem(f"limits.max_grasp_force={cap}", f"table.mass={mass}", *STILL)
-    found = elastic(problem, naive_start(problem).x, np.inf)
+    found = elastic(problem, naive_guess(problem).x, np.inf)
     assert found.converged
     assert {(v.constraint, v.who, v.unit) for v in found.violations} == {
         ("grasp_force", "human", "N"), ("grasp_force", "robot", "N")
@@ -51,7 +51,7 @@ def test_a_robot_too_far_away_leaves_the_gap_of_inverse_kinematics_and_the_objec
     """Nothing but closure is broken; the gap is no smaller than the shortest, and the balance is never for sale."""
     problem = _problem("task.standing_distance=2.3", *STILL)
     obstacles, _ = screen(problem, 0, np.inf)
-    found = elastic(problem, naive_start(problem).x, np.inf)
+    found = elastic(problem, naive_guess(problem).x, np.inf)
     first = found.violations[0]
     assert found.converged
     assert (first.constraint, first.unit) == ("closure", "m")
@@ -68,7 +68,7 @@ def test_derivatives_are_those_of_finite_differences() -> None:
     soft = SoftProblem(*(lambda p: (p.team, p.task, p.mesh))(_problem()))
     rng = np.random.default_rng(0)
     nlp, p = soft.nlp, soft.parameters
-    z = soft.start(naive_start(soft.plain).x) + 0.01 * rng.random(nlp.x.numel())
+    z = soft.start(naive_guess(soft.plain).x) + 0.01 * rng.random(nlp.x.numel())
     step, lam = 1e-6 * rng.standard_normal(len(z)), rng.standard_normal(nlp.g.numel())
 
     def lagrangian_slope(at: np.ndarray) -> np.ndarray:

@@ -68,7 +68,7 @@ def test_two_humans(
 ) -> None:
     """A man and a woman opposite each other; her half-space is turned with her."""
     other = make_turned(human_agent(Subject(1.65, 62.0, "female")), np.pi, 1.25)
-    assert other.keep_in is not None and other.keep_in.normal[0] == pytest.approx(-1.0)
+    assert other.workspace is not None and other.workspace.normal[0] == pytest.approx(-1.0)
     team = Team.of((human, other), table)
     problem = Problem(team, make_task(), RestToRestSpline(8).mesh())
     check_derivatives(problem)

@@ -17,11 +17,11 @@ from liftopt.errors import SolverError
 from liftopt.search import postures
 from liftopt.search.initial_guess import (
     PRESSED,
-    Start,
-    naive_start,
+    InitialGuess,
+    initial_guesses,
+    naive_guess,
     posture_starts,
     recombined,
-    repertoire,
     turned,
 )
 from liftopt.search.moves import ELSEWHERE, SAME, Move, _least_there, apart, combinations
@@ -43,7 +43,7 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
     np.testing.assert_allclose(at[given], pose[given], atol=1e-9)
     turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", at[3:], strict=True)]
     rotation, first = turn[0] @ turn[1] @ turn[2], 0
-    held, moment = team.held.model, np.zeros(3)
+    held, moment = team.object.model, np.zeros(3)
     for i, agent in enumerate(team.agents):
         model, f = agent.reduced(), posture.force[3 * i : 3 * i + 3]
         q = posture.coordinates[first : first + model.nv]
@@ -55,7 +55,7 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
         assert (q >= limits.q_lower - 1e-9).all() and (q <= limits.q_upper + 1e-9).all()
         assert (tau >= limits.tau_lower - 1e-5).all() and (tau <= limits.tau_upper + 1e-5).all()
         pin.framesForwardKinematics(model, data, q)
-        lever = held.frames[held.getFrameId(team.held.grasp_frames[i])].placement.translation
+        lever = held.frames[held.getFrameId(team.object.grasp_frames[i])].placement.translation
         np.testing.assert_allclose(data.oMf[frame].translation, at[:3] + rotation @ lever, atol=1e-7)
         assert np.linalg.norm(f) <= task.max_grasp_force
         moment += np.cross(lever, rotation.T @ f)
@@ -153,7 +153,7 @@ def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift:
     """Pinocchio's forward kinematics: no two moves begin and end with all links within a few centimetres."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("liftopt.search.moves.OTHERS_WEIGHT", 0.0)
-        found = repertoire(small_lift, 8, 0, np.inf)
+        found = initial_guesses(small_lift, 8, 0, np.inf)
     assert found is not None
     for i, (agent, moves) in enumerate(zip(small_lift.team.agents, found.moves, strict=True)):
         assert 1 <= len(moves) <= 8
@@ -187,7 +187,7 @@ def test_turning_a_joint_about_its_own_axis_moves_nothing(team: Team) -> None:
     assert between[0, 1] == between[1, 0] > SAME
 
 
-def _result(start: Start, objective: float, converged: bool = True) -> SolverResult:
+def _result(start: InitialGuess, objective: float, converged: bool = True) -> SolverResult:
     return SolverResult(start.x, Multipliers(start.x, start.x), objective, 1, converged, "", 0.0, 0.0)
 
 
@@ -195,7 +195,7 @@ def test_best_moves_of_all_agents_come_together(small_lift: Problem) -> None:
     """Made-up results: each agent's control points are those of the start in which its move did best."""
     n = small_lift.layout.n_x
     tried = [(None, (0, 0)), (0, (1, 0)), (1, (0, 1)), (0, (2, 0))]
-    starts = [Start(str(i), np.full(n, float(i)), moves, agent) for i, (agent, moves) in enumerate(tried)]
+    starts = [InitialGuess(str(i), np.full(n, float(i)), moves, agent) for i, (agent, moves) in enumerate(tried)]
     results = [_result(start, objective) for start, objective in zip(starts, (10.0, 9.0, 8.0, 12.0), strict=True)]
     start = recombined(small_lift, starts, results)
     assert start is not None and start.moves == (1, 1)
@@ -208,14 +208,14 @@ def test_best_moves_of_all_agents_come_together(small_lift: Problem) -> None:
     nowhere = [_result(starts[0], 10.0, False), results[1], _result(starts[2], 8.0, False), results[3]]
     assert recombined(small_lift, starts, nowhere) is None
     # A start between the nearest postures joins no known moves.
-    unknown = [Start("nearest postures", naive_start(small_lift).x), naive_start(small_lift)]
+    unknown = [InitialGuess("nearest postures", naive_guess(small_lift).x), naive_guess(small_lift)]
     assert recombined(small_lift, unknown, [_result(start, 10.0) for start in unknown]) is None
 
 
 def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) -> None:
     """Sawyer's fifth joint has 5.96 rad: at its upper limit, a full turn back is its lower limit, to 0.33 rad."""
     robot, layout = small_lift.team.agents[1], small_lift.layout
-    x = naive_start(small_lift).x
+    x = naive_guess(small_lift).x
     assert turned(small_lift, x) is None
     column = layout.control[:, layout.columns(1)][:, 4]
     x[column] = robot.limits.q_upper[4]
@@ -228,11 +228,11 @@ def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) 
     assert turned(small_lift, x) is None
 
 
-def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[Start], small_lift: Problem) -> None:
+def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[InitialGuess], small_lift: Problem) -> None:
     """Within bounds; each agent stands as in its own postures, the object as it does there in the mean."""
     assert 1 <= len(starts) <= 2
     assert [start.name for start in starts] == [f"posture pair {i + 1}" for i in range(len(starts))]
-    found = repertoire(small_lift, 2, 0, np.inf)
+    found = initial_guesses(small_lift, 2, 0, np.inf)
     assert found is not None
     lower, upper = small_lift.bounds()
     for start in starts:
@@ -247,14 +247,14 @@ def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[Start], sm
             np.testing.assert_allclose(control[row, -6:], mean, atol=1e-9)
 
 
-def test_equal_seeds_give_equal_starts(small_lift: Problem, starts: list[Start]) -> None:
+def test_equal_seeds_give_equal_starts(small_lift: Problem, starts: list[InitialGuess]) -> None:
     again = posture_starts(small_lift, 2, 0, np.inf)
     assert len(again) == len(starts)
     for one, other in zip(starts, again, strict=True):
         np.testing.assert_array_equal(one.x, other.x)
 
 
-def test_two_starts_differ(starts: list[Start]) -> None:
+def test_two_starts_differ(starts: list[InitialGuess]) -> None:
     if len(starts) == 2:
         assert np.abs(starts[0].x - starts[1].x).max() > 0.05
 
@@ -267,7 +267,7 @@ def test_no_time_no_starts(small_lift: Problem) -> None:
 
 def test_naive_start_is_the_papers(small_lift: Problem) -> None:
     """Zeros and 10 N, clipped to the bounds."""
-    start = naive_start(small_lift)
+    start = naive_guess(small_lift)
     control, force = small_lift.unpack(start.x)
     lower, upper = small_lift.bounds()
     np.testing.assert_array_equal(control, np.clip(0.0, *(small_lift.unpack(bound)[0] for bound in (lower, upper))))
@@ -276,7 +276,7 @@ def test_naive_start_is_the_papers(small_lift: Problem) -> None:
 
 def test_naive_force_is_clipped(small_lift: Problem, make_task: Callable[..., LiftTask]) -> None:
     gentle = Problem(small_lift.team, make_task(max_grasp_force=4.0), small_lift.mesh)
-    assert (gentle.unpack(naive_start(gentle).x)[1] == 4.0).all()
+    assert (gentle.unpack(naive_guess(gentle).x)[1] == 4.0).all()
 
 
 def test_seeds_spread_within_the_ranges_of_motion(small_lift: Problem, rng: np.random.Generator) -> None:

@@ -28,7 +28,7 @@ def hands_and_points(problem: Problem, coordinates: np.ndarray) -> list[tuple[np
     x, pairs = coordinates[-6:], []
     turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", x[3:], strict=True)]
     for i, agent in enumerate(problem.team.agents):
-        model, held = agent.reduced(), problem.team.held
+        model, held = agent.reduced(), problem.team.object
         data = model.createData()
         pin.framesForwardKinematics(model, data, coordinates[problem.layout.columns(i)])
         lever = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
@@ -80,7 +80,7 @@ def test_half_space_holds_the_hand_and_can_be_left_out(at_rest: Problem) -> None
     """A half-space 0.1 m beyond the grasp point: the hand stays that far from it, or is that far outside."""
     human = at_rest.team.agents[0]
     edge = at_rest.task.start[0] - 0.225
-    walled = replace(human, keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), edge + 0.1))
+    walled = replace(human, workspace=HalfSpace(np.array([1.0, 0.0, 0.0]), edge + 0.1))
     problem = replace(at_rest, team=replace(at_rest.team, agents=(walled, at_rest.team.agents[1])))
     kinematics, seeds = InverseKinematics(problem), seeds_of(problem, 6)
     held = kinematics.reach(problem.task.start, seeds, np.inf, most=60)

@@ -138,8 +138,8 @@ def test_nan_is_a_violation(small_lift: Problem, solved: SolverResult) -> None:
 
 def test_another_subjects_point_is_not_optimal(small_lift: Problem, solved: SolverResult) -> None:
     """The models are those of the problem: one kilogram more leaves its weight unbalanced at rest."""
-    held = small_lift.team.held
+    held = small_lift.team.object
     model = held.model.copy()
     model.inertias[1] = type(model.inertias[1])(3.0, model.inertias[1].lever, model.inertias[1].inertia)
-    other = replace(small_lift, team=replace(small_lift.team, held=replace(held, model=model)))
+    other = replace(small_lift, team=replace(small_lift.team, object=replace(held, model=model)))
     assert kkt_error(other, solved.x, solved.multipliers).violation >= 9.81 - 1e-6

@@ -10,14 +10,14 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation.problem import Problem
-from liftopt.search.initial_guess import naive_start
+from liftopt.search.initial_guess import naive_guess
 from liftopt.search.mirrored_joints import in_line, mirrored
 
 
 def test_mirrored_arm_holds_its_last_link_as_before(small_lift: Problem) -> None:
     """Pinocchio: Sawyer's last link has the same orientation, and at most three joints differ."""
     robot, layout = small_lift.team.agents[1], small_lift.layout
-    x, columns = naive_start(small_lift).x, layout.control[:, layout.columns(1)]
+    x, columns = naive_guess(small_lift).x, layout.control[:, layout.columns(1)]
     q = np.array([0.3, -0.8, 0.4, 1.0, -0.5, 0.9, 0.2])
     x[columns] = q
     found = [start for start in mirrored(small_lift, x) if start.name.startswith("robot")]
@@ -49,4 +49,4 @@ def test_only_joints_between_axes_that_can_be_parallel_are_mirrored(small_lift: 
     np.testing.assert_allclose(in_line(arm), [np.nan, 0.0, np.nan, np.nan], atol=1e-12)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("liftopt.search.mirrored_joints.in_line", lambda agent: np.full(len(agent.posture), np.nan))
-        assert list(mirrored(small_lift, naive_start(small_lift).x)) == []
+        assert list(mirrored(small_lift, naive_guess(small_lift).x)) == []

@@ -12,7 +12,7 @@ from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.search.alternative_paths import GAP, MOST, SAME, other_ways
-from liftopt.search.initial_guess import Start
+from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.moves import apart
 from liftopt.search.postures import PostureSolver
 from liftopt.search.via_postures import SAME as SAME_POSTURE
@@ -30,7 +30,7 @@ def solver(small_lift: Problem) -> PostureSolver:
 def _gaps(problem: Problem, x: np.ndarray) -> np.ndarray:
     """Return the distance between each agent's grasp and its point on the object at every knot, (K, agents) [m]."""
     control, _ = problem.unpack(x)
-    coordinates, held = problem.mesh.basis[0] @ control, problem.team.held
+    coordinates, held = problem.mesh.basis[0] @ control, problem.team.object
     gaps = np.zeros((len(coordinates), len(problem.team.agents)))
     for k, row in enumerate(coordinates):
         turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", row[-3:], strict=True)]
@@ -46,7 +46,7 @@ def _gaps(problem: Problem, x: np.ndarray) -> np.ndarray:
 
 
 def test_another_way_changes_one_agent_whose_hand_stays_with_the_object(
-    small_lift: Problem, solver: PostureSolver, starts: list[Start]
+    small_lift: Problem, solver: PostureSolver, starts: list[InitialGuess]
 ) -> None:
     """Knot by knot the spline is a fit: what Pinocchio finds may be a little more than the gap allowed on the way."""
     x, layout = starts[0].x, small_lift.layout
@@ -70,7 +70,7 @@ def test_another_way_changes_one_agent_whose_hand_stays_with_the_object(
 
 
 def test_equal_random_numbers_give_equal_ways_and_no_time_gives_none(
-    small_lift: Problem, solver: PostureSolver, starts: list[Start]
+    small_lift: Problem, solver: PostureSolver, starts: list[InitialGuess]
 ) -> None:
     x = starts[0].x
     one, two = (other_ways(small_lift, solver.kinematics, x, np.random.default_rng(1), FOREVER) for _ in range(2))
@@ -98,7 +98,7 @@ def test_rests_hold_the_object_anywhere_and_the_cheapest_comes_first(
 
 
 def test_a_detour_passes_the_posture_of_its_leader_and_ends_as_before(
-    small_lift: Problem, solver: PostureSolver, starts: list[Start]
+    small_lift: Problem, solver: PostureSolver, starts: list[InitialGuess]
 ) -> None:
     x, layout = starts[0].x, small_lift.layout
     by = rests(small_lift, solver, np.random.default_rng(0), np.inf)

@@ -13,7 +13,7 @@ from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.model import load_scenario
-from liftopt.search.cache import Workshop
+from liftopt.search.cache import SolverCache
 from liftopt.search.solve import Search
 
 
@@ -22,10 +22,10 @@ class Solved:
 
     def __init__(self) -> None:
         scenario = load_scenario("table5_near", ["solver.name=banded", "solver.starts=2", "solver.intervals=12"])
-        plan = Search(scenario, Workshop(), RestToRestSpline(12), lambda line: None).best()
-        self.solver = Banded(plan.problem, BandedOptions(tolerance=1e-8))
-        self.problem, self.result = plan.problem, plan.result
-        self.result = self.near(plan.problem)
+        candidate = Search(scenario, SolverCache(), RestToRestSpline(12), lambda line: None).best()
+        self.solver = Banded(candidate.problem, BandedOptions(tolerance=1e-8))
+        self.problem, self.result = candidate.problem, candidate.result
+        self.result = self.near(candidate.problem)
 
     def near(self, problem: Problem) -> SolverResult:
         """Return the optimum of a problem near the first one's."""
@@ -54,13 +54,13 @@ def test_optimum_moves_as_it_does_when_solved_again(solved: Solved, name: str) -
     optimum = Optimum(solved.problem, solved.result.x, solved.result.multipliers)
     step = 1e-5
     tangent = optimum.tangent(_at(solved.problem, **{name: -step}), _at(solved.problem, **{name: step}), step)
-    wide = min(1e-3, 0.1 * tangent.reach)
-    low, high = (solved.near(_at(solved.problem, **{name: change})) for change in (-wide, wide))
-    moved = (high.x - low.x) / (2 * wide)
+    simd = min(1e-3, 0.1 * tangent.reach)
+    low, high = (solved.near(_at(solved.problem, **{name: change})) for change in (-simd, simd))
+    moved = (high.x - low.x) / (2 * simd)
     assert np.abs(tangent.x - moved).max() < 1e-3 * np.abs(moved).max()
-    pulled = (high.multipliers.g - low.multipliers.g) / (2 * wide)
+    pulled = (high.multipliers.g - low.multipliers.g) / (2 * simd)
     assert np.abs(tangent.multipliers.g - pulled).max() < 1e-2 * np.abs(pulled).max()
-    assert tangent.objective == pytest.approx((high.objective - low.objective) / (2 * wide), rel=1e-4)
+    assert tangent.objective == pytest.approx((high.objective - low.objective) / (2 * simd), rel=1e-4)
 
 
 def test_limit_that_comes_first_is_where_it_says(solved: Solved) -> None:

@@ -45,11 +45,11 @@ def test_ten_random_changes_are_followed_and_verified(warm: Replanner, scenario:
         assert solution.solved, solution.status
         assert solution.kept_start == WARM
         iterations.append(solution.iterations)
-        plan = warm.latest
-        assert plan is not None
-        reference = reference or Ipopt(plan.problem)
-        found, soon = plan.result, np.inf
-        polished = reference.solve(found.x, deadline=soon, warm=found.multipliers, problem=plan.problem)
+        candidate = warm.latest
+        assert candidate is not None
+        reference = reference or Ipopt(candidate.problem)
+        found, soon = candidate.result, np.inf
+        polished = reference.solve(found.x, deadline=soon, warm=found.multipliers, problem=candidate.problem)
         assert polished.converged
         np.testing.assert_allclose(solution.objective, polished.objective, rtol=1e-6)
     # From a posture pair it takes about forty.
@@ -65,16 +65,16 @@ def test_a_replanned_solution_is_assessed_as_any_other(warm: Replanner, scenario
 
 def test_plan_is_the_solution_at_any_time(warm: Replanner, scenario: Scenario) -> None:
     """The solution's own knots; by finite differences between them; at rest before the start and after the end."""
-    solution, plan = warm.solve(scenario), warm.latest
-    assert plan is not None
-    motion = plan.at(solution.time)
+    solution, candidate = warm.solve(scenario), warm.latest
+    assert candidate is not None
+    motion = candidate.at(solution.time)
     for agent, known in zip(motion.agents, solution.agents, strict=True):
         np.testing.assert_allclose(agent.q, known.q, rtol=0, atol=1e-12)
         np.testing.assert_allclose(agent.tau, known.tau, rtol=0, atol=1e-9)
-    now, ahead, behind = (plan.at([0.77 + step]).agents[1] for step in (0.0, 1e-5, -1e-5))
+    now, ahead, behind = (candidate.at([0.77 + step]).agents[1] for step in (0.0, 1e-5, -1e-5))
     np.testing.assert_allclose(now.v, (ahead.q - behind.q) / 2e-5, rtol=0, atol=1e-6)
-    outside, ends = plan.at([-1.0, 99.0]), plan.at([0.0, scenario.duration])
-    np.testing.assert_array_equal(outside.held.pose, ends.held.pose)
+    outside, ends = candidate.at([-1.0, 99.0]), candidate.at([0.0, scenario.duration])
+    np.testing.assert_array_equal(outside.object.pose, ends.object.pose)
     assert np.abs(outside.agents[0].v).max() < 1e-9
 
 

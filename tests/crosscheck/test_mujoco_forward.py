@@ -42,7 +42,7 @@ def test_open_loop_follows_the_motion_for_50_ms_from_everywhere(windows):
 def test_the_moment_that_nobody_serves_turns_the_object_when_it_is_left_out(simulation, windows, solution):
     # Oracle: that moment at its largest for 50 ms on the table's inertia about the line of its grasps.
     turned = simulation.windows(serve=False).deviation.turn
-    moment = np.abs(solution.held.wrench[:, 3]).max()
+    moment = np.abs(solution.object.wrench[:, 3]).max()
     table = solution.scenario.table
     inertia = table.mass * ((table.width**2 + table.height**2) / 12 + (table.height / 2) ** 2)
     assert windows.deviation.turn < turned < 1.5 * moment / inertia * 0.05**2 / 2

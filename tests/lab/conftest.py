@@ -146,7 +146,7 @@ def box_lift() -> Path:
 def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, raised: float = 0.0) -> RecordedLift:
     """Return a record of the predicted motion: late by a share of the lift, values scaled, angles raised."""
     dense = refined(solution, 10)
-    human, held = dense.agents[0], dense.held
+    human, held = dense.agents[0], dense.object
     duration = float(dense.time[-1])
     time = np.arange(round((duration + 2 * STANDING) * 200) + 1) / 200
 

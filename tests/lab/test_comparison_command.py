@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from liftopt.commands.cli import main
+from liftopt.lab.comparison import plots as plots_comparison
 from liftopt.lab.mocap.recorded_file import save_recorded
 from liftopt.scenario.model import load_scenario
-from liftopt.viz import plots_comparison, report
+from liftopt.viz import report
 from liftopt.viz.plots import PLOTS
 from liftopt.viz.report_figures import InlineFigure
 

@@ -148,7 +148,7 @@ def test_before_the_goal_the_arm_carries_the_solutions_load_at_rest(runs):
 def test_at_rest_before_and_after_the_object_is_in_balance(result, solved):
     """Oracles: the sums of forces and of moments by hand, Pinocchio's gravity torques, the motion itself at rest."""
     solution = result.solution
-    plan, held = Plan.of(solution), solution.held
+    plan, held = Plan.of(solution), solution.object
     assert np.abs(held.acceleration[[0, -1], :3]).max() > 1.0  # or motion and rest were the same
     _, robot = agents_of(solution.scenario, solution.urdfs)
     moving, data, frame = solution.agents[1].moving, robot.model.createData(), robot.model.getFrameId("robot_grasp")

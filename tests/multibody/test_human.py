@@ -31,7 +31,7 @@ def human():
 def test_joint_names_and_frames_are_those_of_table_2(human):
     names = [f"human_GT{i}" for i in (1, 2, 3)] + [f"human_Q{i}" for i in range(1, 11)]
     assert list(human.model.names)[1:] == names
-    assert human.pinned == tuple(names[:3])
+    assert human.locked_joints == tuple(names[:3])
     assert human.model.existFrame("world") and human.model.existFrame(human.grasp_frame)
     assert human.reduced().nq == len(human.posture) == len(human.limits.q_lower) == 10
 
@@ -147,8 +147,8 @@ def test_posture_is_comfortable_and_reaches_ahead(human, frame_pose):
     assert np.all(limits.q_lower <= human.posture) and np.all(human.posture <= limits.q_upper)
     hand = frame_pose(human.model, "human_grasp", np.r_[np.zeros(3), human.posture])[:3, 3]
     assert 0.3 < hand[0] < 0.6 and 0.8 < hand[2] < 1.2
-    assert human.keep_in is not None
-    assert human.keep_in.normal @ hand > human.keep_in.offset
+    assert human.workspace is not None
+    assert human.workspace.normal @ hand > human.workspace.offset
 
 
 @pytest.mark.parametrize("subject", [SUBJECT, WOMAN], ids=["man", "woman"])

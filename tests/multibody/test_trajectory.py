@@ -41,7 +41,7 @@ def swinging_arm() -> Agent:
         model.appendBodyToJoint(parent, body, pin.SE3.Identity())
     model.addFrame(pin.Frame("tip", parent, 0, pin.SE3(np.eye(3), np.array([0.0, 0.1, 0.3])), pin.FrameType.OP_FRAME))
     ones = np.ones(3)
-    return Agent("swing", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
+    return Agent("swing", "robot", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
 
 
 AGENTS = {
@@ -88,7 +88,7 @@ def test_torques_are_rneas_with_the_reaction_as_external_force(agent: Agent, rng
         np.testing.assert_allclose(found.tau[k], expected, rtol=0, atol=1e-12 * max(1.0, np.abs(expected).max()))
         np.testing.assert_allclose(found.grasp_position[k], placement.translation, atol=1e-14)
     assert found.joint_names == tuple(list(model.names)[1:])
-    np.testing.assert_array_equal(found.moving, [name not in agent.pinned for name in found.joint_names])
+    np.testing.assert_array_equal(found.moving, [name not in agent.locked_joints for name in found.joint_names])
     for actual, expected in zip((found.q, found.v, found.a), (q, v, a), strict=True):
         np.testing.assert_array_equal(actual, expected)
 

@@ -13,7 +13,7 @@ import pytest
 from liftopt.assessment.assess import assess
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import load_scenario
-from liftopt.search.cache import Workshop
+from liftopt.search.cache import SolverCache
 from liftopt.search.solve import Search, lift
 from liftopt.solution.finding import CAUTION
 from liftopt.solution.solution import Solution
@@ -29,7 +29,7 @@ CASES = {
 def _told(solution: Solution) -> Any:
     """Return all that a solution tells, but for the seconds it took."""
     starts = [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]
-    return [solution.status, solution.notes, solution.kept_start, starts, solution.reasons, solution.remedies]
+    return [solution.status, solution.notes, solution.kept_start, starts, solution.reasons, solution.suggested_changes]
 
 
 def _assert_same(one: Solution, other: Solution) -> None:
@@ -85,7 +85,7 @@ def test_a_verdict_that_time_cut_short_is_told_as_such(stage: str, monkeypatch: 
 
 
 def test_no_time_at_all_is_told_and_the_best_iterate_is_finite() -> None:
-    search = Search(scenario := load_scenario("table5", SMALL), Workshop(), motions_of(scenario), lambda line: None)
+    search = Search(scenario := load_scenario("table5", SMALL), SolverCache(), motions_of(scenario), lambda line: None)
     search.deadline = search.end = time.monotonic()
     solution = search.explained(search.best())
     assert solution.status.startswith("not converged (time limit of 3600 s reached)")

@@ -13,18 +13,18 @@ from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.errors import SolverError
 from liftopt.scenario.model import load_scenario
-from liftopt.search.cache import Workshop
-from liftopt.search.coarse_search import ROUGH, _unseen, scout
-from liftopt.search.initial_guess import Repertoire, Start, repertoire
+from liftopt.search.cache import SolverCache
+from liftopt.search.coarse_search import ROUGH, _unseen, coarse_search
+from liftopt.search.initial_guess import InitialGuess, InitialGuessSet, initial_guesses
 from liftopt.search.mesh_refinement import PROMISING, SAME_OPTIMUM, SCOUTED, meshes_below
 from liftopt.search.solve import Search
 from liftopt.search.variations import TURN
 
 
-def _search(*overrides: str, intervals: int = 20) -> tuple[Search, Repertoire]:
+def _search(*overrides: str, intervals: int = 20) -> tuple[Search, InitialGuessSet]:
     scenario = load_scenario("table5_near", overrides)
-    search = Search(scenario, Workshop(), RestToRestSpline(intervals), lambda line: None)
-    found = repertoire(search.problem, 12, 0, np.inf, None, search.postures)
+    search = Search(scenario, SolverCache(), RestToRestSpline(intervals), lambda line: None)
+    found = initial_guesses(search.problem, 12, 0, np.inf, None, search.postures)
     assert found is not None
     return search, found
 
@@ -32,15 +32,15 @@ def _search(*overrides: str, intervals: int = 20) -> tuple[Search, Repertoire]:
 def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() -> None:
     """Each is first-order optimal by Pinocchio's derivatives, as far as scouts go."""
     search, found = _search("solver.starts=3")
-    plans = scout(search, found, 12)
-    assert 1 <= len(plans) <= 3
-    objectives = np.array([plan.result.objective for plan in plans])
+    candidates = coarse_search(search, found, 12)
+    assert 1 <= len(candidates) <= 3
+    objectives = np.array([candidate.result.objective for candidate in candidates])
     assert (np.diff(objectives) > SAME_OPTIMUM * objectives[:-1]).all()
     assert objectives[-1] <= PROMISING * objectives[0]
-    for plan in plans:
-        assert plan.spline.intervals == 10 and plan.start.endswith(", N = 10")
-        assert plan.verification.kkt_error <= ROUGH * plan.result.objective
-    assert search.notes[-1].endswith(f"the best {len(plans)} were taken to 20")
+    for candidate in candidates:
+        assert candidate.spline.intervals == 10 and candidate.start.endswith(", N = 10")
+        assert candidate.verification.kkt_error <= ROUGH * candidate.result.objective
+    assert search.notes[-1].endswith(f"the best {len(candidates)} were taken to 20")
 
 
 @given(intervals=st.integers(12, 400))
@@ -53,9 +53,9 @@ def test_meshes_below_double_up_to_the_one_asked_for(intervals: int) -> None:
 
 def test_a_fine_mesh_is_reached_from_mesh_to_mesh() -> None:
     search, _ = _search("solver.starts=2", "solver.tries=4", "solver.intervals=80", intervals=80)
-    plan = search.run()
-    assert plan.solved
-    chain = [plan]
+    candidate = search.run()
+    assert candidate.solved
+    chain = [candidate]
     while chain[-1].origin is not None:
         chain.append(chain[-1].origin)
     assert [link.spline.intervals for link in chain] == [80, 40, 20]
@@ -67,9 +67,9 @@ def test_a_fine_mesh_is_reached_from_mesh_to_mesh() -> None:
 
 def test_no_scouts_where_half_the_mesh_is_too_coarse_or_none_are_asked_for() -> None:
     coarse, found = _search(intervals=10)
-    assert scout(coarse, found, 12) == []
+    assert coarse_search(coarse, found, 12) == []
     search, found = _search()
-    assert scout(search, found, 0) == []
+    assert coarse_search(search, found, 0) == []
     assert search.notes == []
 
 
@@ -79,17 +79,17 @@ def test_the_search_goes_on_without_scouts_where_their_solver_is_missing(monkeyp
     def missing(*_: object) -> None:
         raise SolverError("not installed")
 
-    monkeypatch.setattr(search.workshop, "solver", missing)
-    assert scout(search, found, 12) == []
+    monkeypatch.setattr(search.cache, "solver", missing)
+    assert coarse_search(search, found, 12) == []
 
 
 def test_the_chance_of_something_new_is_the_share_of_what_was_found_once() -> None:
     """Good (1953), by hand: of six starts that converged, to 1, 1, 2, 3, 3 and 4, two led where no other did."""
     x = np.zeros(1)
 
-    def tried(*objectives: float) -> list[tuple[Start, SolverResult]]:
+    def tried(*objectives: float) -> list[tuple[InitialGuess, SolverResult]]:
         return [
-            (Start("", x), SolverResult(x, Multipliers(x, x), J, 1, bool(np.isfinite(J)), "", 0.0, 0.0))
+            (InitialGuess("", x), SolverResult(x, Multipliers(x, x), J, 1, bool(np.isfinite(J)), "", 0.0, 0.0))
             for J in objectives
         ]
 
@@ -103,7 +103,7 @@ def test_where_an_optimum_was_found_once_the_best_are_varied() -> None:
     """At least one turn of variations; Pinocchio's derivatives judge the optima."""
     overrides = ["table.mass=9", "duration=5", "task.start.human_distance=free", "task.end.human_distance=free"]
     search, found = _search(*overrides)
-    plans = scout(search, found, 12)
-    assert plans and int(search.notes[-1].split()[3]) >= TURN
-    for plan in plans:
-        assert plan.verification.kkt_error <= ROUGH * plan.result.objective
+    candidates = coarse_search(search, found, 12)
+    assert candidates and int(search.notes[-1].split()[3]) >= TURN
+    for candidate in candidates:
+        assert candidate.verification.kkt_error <= ROUGH * candidate.result.objective

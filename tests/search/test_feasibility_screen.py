@@ -109,7 +109,7 @@ def test_a_half_space_that_keeps_the_hand_away_is_named() -> None:
     """The hand must be 0.40 m ahead of the feet; a wall at 0.55 m leaves it 0.15 m outside."""
     problem = _problem()
     human, robot = problem.team.agents
-    walled = replace(human, keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.55))
+    walled = replace(human, workspace=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.55))
     obstacles, _ = screen(replace(problem, team=replace(problem.team, agents=(walled, robot))), 0, np.inf)
     assert [(o.constraint, o.who, o.unit) for o in obstacles] == [("keep_in", "human", "m")] * 2
     for obstacle in obstacles:

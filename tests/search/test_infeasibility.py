@@ -17,11 +17,11 @@ from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import robot_of
 from liftopt.scenario.model import load_scenario, scenario_to_dict, with_overrides
-from liftopt.search import suggested_changes as remedies
-from liftopt.search.cache import Workshop
-from liftopt.search.candidate import Plan
-from liftopt.search.coarse_search import scout
-from liftopt.search.initial_guess import Repertoire, Start
+from liftopt.search import suggested_changes as suggested_changes
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
+from liftopt.search.coarse_search import coarse_search
+from liftopt.search.initial_guess import InitialGuess, InitialGuessSet
 from liftopt.search.solve import WIDER, Search, lift
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
@@ -35,17 +35,17 @@ BANDED = ("solver.name=banded", "solver.starts=2")
 
 
 @cache
-def _workshop() -> Workshop:
-    return Workshop()
+def _workshop() -> SolverCache:
+    return SolverCache()
 
 
 @cache
 def _solution(*overrides: str) -> Solution:
-    return lift(load_scenario("table5", [*BANDED, *overrides]), workshop=_workshop())
+    return lift(load_scenario("table5", [*BANDED, *overrides]), cache=_workshop())
 
 
 def _value(solution: Solution, *keys: str) -> float:
-    return next(remedy.values[0] for remedy in solution.remedies if remedy.keys == keys)
+    return next(change.values[0] for change in solution.suggested_changes if change.keys == keys)
 
 
 def _farthest(height: float) -> float:
@@ -82,7 +82,7 @@ def test_a_robot_too_far_away_is_to_come_as_near_as_it_must_reach() -> None:
     ]  # fmt: skip
     nearer = _value(solution, "task.standing_distance")
     assert farthest - 0.02 <= nearer <= farthest
-    message = next(r.message for r in solution.remedies if r.keys == ("task.standing_distance",))
+    message = next(r.message for r in solution.suggested_changes if r.keys == ("task.standing_distance",))
     assert message == f"robot base {2.3 - nearer:.2f} m nearer"
 
 
@@ -102,8 +102,8 @@ def test_an_object_too_heavy_for_two_grasps_is_to_weigh_what_they_hold() -> None
 
 def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 2 m/s, 0.5 m take 0.26 s with 20 intervals; 0.27 s leave that speed, and torques and times are named."""
-    longer = remedies.levers(load_scenario("table5"))[0]
-    monkeypatch.setattr(remedies, "levers", lambda scenario: [longer])
+    longer = suggested_changes.levers(load_scenario("table5"))[0]
+    monkeypatch.setattr(suggested_changes, "levers", lambda scenario: [longer])
     solution = _solution(*FAST)
     assert solution.status.startswith("infeasible: ")
     assert "\n" not in solution.status
@@ -121,22 +121,24 @@ def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(mo
 def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, ...]) -> None:
     """Solved from the beginning, not from the motion that led to it; a heavy object could be let fall at first."""
     solution = _solution(*overrides)
-    assert solution.remedies == tuple(sorted(solution.remedies, key=lambda remedy: remedy.size))
+    assert solution.suggested_changes == tuple(sorted(solution.suggested_changes, key=lambda change: change.size))
     summary = summary_dict(solution)
-    assert [entry["message"] for entry in summary["remedies"]] == [remedy.message for remedy in solution.remedies]
-    assert solution.remedies
-    for remedy in solution.remedies:
-        changes = [f"{key}={value}" for key, value in zip(remedy.keys, remedy.values, strict=True)]
-        assert lift(with_overrides(solution.scenario, changes), workshop=_workshop()).solved
+    assert [entry["message"] for entry in summary["remedies"]] == [
+        change.message for change in solution.suggested_changes
+    ]
+    assert solution.suggested_changes
+    for change in solution.suggested_changes:
+        changes = [f"{key}={value}" for key, value in zip(change.keys, change.values, strict=True)]
+        assert lift(with_overrides(solution.scenario, changes), cache=_workshop()).solved
 
 
 def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
     scenario = load_scenario("table5", [*BANDED, *FAR])
     before = scenario_to_dict(scenario)
     search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
-    assert remedies.Remedies(search, [], work=0.0).against(_solution(*FAR).reasons) == ()
+    assert suggested_changes.SuggestedChanges(search, [], work=0.0).against(_solution(*FAR).reasons) == ()
     search.deadline = time.monotonic()
-    assert remedies.Remedies(search, []).against(_solution(*FAR).reasons) == ()
+    assert suggested_changes.SuggestedChanges(search, []).against(_solution(*FAR).reasons) == ()
     assert scenario_to_dict(scenario) == before
 
 
@@ -144,8 +146,8 @@ def test_a_change_that_leaves_what_a_model_can_be_is_no_remedy() -> None:
     """A scenario takes a base height of 0.01 m, Sawyer's model none below 0.1 m."""
     scenario = load_scenario("table5", [*BANDED, "robot.base_height=0.3"])
     search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
-    (lever,) = [lever for lever in remedies.levers(scenario) if lever.keys == ("robot.base_height",)]
-    assert remedies.Remedies(search, [])._plan(lever, -29, None) is None
+    (lever,) = [lever for lever in suggested_changes.levers(scenario) if lever.keys == ("robot.base_height",)]
+    assert suggested_changes.SuggestedChanges(search, [])._candidate(lever, -29, None) is None
 
 
 def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
@@ -171,23 +173,23 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
     first, others = solution.starts[:3], solution.starts[3:]
     assert [start.status for start in first] == ["Line_Search_Failed"] * 2 + ["converged"]
     assert first[-1].name == "elastic" and all(start.name.startswith("elastic, ") for start in others)
-    assert solution.reasons == () == solution.remedies
+    assert solution.reasons == () == solution.suggested_changes
 
 
 def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first scouts come back with nothing and the starts on the full mesh fail; those after them find the lift."""
     asked: list[int] = []
 
-    def blind(search: Search, found: Repertoire, tries: int, *most: int) -> list[Plan]:
+    def blind(search: Search, found: InitialGuessSet, tries: int, *most: int) -> list[Candidate]:
         asked.append(tries)
-        return scout(search, found, tries, *most) if len(asked) > 1 else []
+        return coarse_search(search, found, tries, *most) if len(asked) > 1 else []
 
-    def fails(self: Search, starts: list[Start]) -> Plan:
+    def fails(self: Search, starts: list[InitialGuess]) -> Candidate:
         self.obstacles = _solution(*FAR).reasons
         return self._hindered(starts[0], list(self.obstacles))
 
-    monkeypatch.setattr("liftopt.search.solve.scout", blind)
+    monkeypatch.setattr("liftopt.search.solve.coarse_search", blind)
     monkeypatch.setattr(Search, "_solved", fails)
-    solution = lift(load_scenario("table5", [*BANDED, "solver.tries=2"]), workshop=_workshop())
+    solution = lift(load_scenario("table5", [*BANDED, "solver.tries=2"]), cache=_workshop())
     assert asked == [2, 2 * WIDER]
-    assert solution.solved and solution.reasons == () == solution.remedies
+    assert solution.solved and solution.reasons == () == solution.suggested_changes

@@ -11,14 +11,14 @@ import pytest
 
 from liftopt.collocation.solvers.banded import Banded
 from liftopt.collocation.solvers.ipopt import Ipopt
-from liftopt.collocation.solvers.result import BEATEN, SolverResult
+from liftopt.collocation.solvers.result import PRUNED, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.commands.cli import main
 from liftopt.control.replanning import Replanner
 from liftopt.scenario.model import Refine, load_scenario
-from liftopt.search.cache import Workshop
-from liftopt.search.candidate import Plan
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
 from liftopt.search.mesh_refinement import SAME_OPTIMUM, compared, distance, finer, neighbour, rivals, unmet
 from liftopt.search.solve import Search, lift
 from liftopt.solution.accuracy import Accuracy
@@ -38,7 +38,7 @@ def refined() -> Solution:
 
 
 @pytest.fixture(scope="module")
-def coarse() -> Plan:
+def coarse() -> Candidate:
     replanner = Replanner()
     assert replanner.solve(load_scenario("table5", BANDED)).solved
     assert replanner.latest is not None
@@ -59,7 +59,7 @@ def test_refined_lift_meets_its_tolerances_and_the_second_transcriptions_limit(r
     assert [start.name for start in refined.starts].count(refined.kept_start) == 1
 
 
-def test_every_answer_carries_its_limit_with_a_bar_from_a_finer_mesh(coarse: Plan) -> None:
+def test_every_answer_carries_its_limit_with_a_bar_from_a_finer_mesh(coarse: Candidate) -> None:
     """From N = 20 and 40 the limit is within 0.5 % of the second transcription's, and within its own bar."""
     solution = Replanner().solve(coarse.scenario)
     accuracy = solution.accuracy
@@ -71,10 +71,10 @@ def test_every_answer_carries_its_limit_with_a_bar_from_a_finer_mesh(coarse: Pla
     assert summary_dict(solution)["accuracy"]["objective_error"] == accuracy.objective_error
 
 
-def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Plan) -> None:
+def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Candidate) -> None:
     """Nested spline spaces: at every time and back again, to rounding."""
     spline = RestToRestSpline(2 * coarse.spline.intervals)
-    problem = Workshop().problem(coarse.scenario, spline)
+    problem = SolverCache().problem(coarse.scenario, spline)
     x = transfer(coarse.problem, coarse.spline, coarse.result.x, problem, spline)
     phase = np.linspace(0.0, 1.0, 173)
     before = coarse.spline.basis(phase) @ coarse.problem.unpack(coarse.result.x)[0]
@@ -83,32 +83,34 @@ def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Plan) -> None:
     np.testing.assert_allclose(back, coarse.result.x, atol=1e-9)
 
 
-def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Plan) -> None:
+def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Candidate) -> None:
     """Against a rival of a tenth of its objective, and against none."""
     told: list[tuple[str, str]] = []
-    rival = replace(coarse.result, objective=0.1 * coarse.result.objective)
+    incumbent = replace(coarse.result, objective=0.1 * coarse.result.objective)
 
     def tell(name: str, result: SolverResult) -> None:
         told.append((name, result.status))
 
-    given = (Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
-    assert neighbour(*given, rival=rival, told=tell) is None
+    given = (SolverCache(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    assert neighbour(*given, incumbent=incumbent, told=tell) is None
     there = neighbour(*given, told=tell)
     assert there is not None
-    assert told == [(there.start, BEATEN), (there.start, there.result.status)]
+    assert told == [(there.start, PRUNED), (there.start, there.result.status)]
 
 
-def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Plan) -> None:
+def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Candidate) -> None:
     """The oracle is a cold solve of the same motion beside a warm one."""
-    search = Search(coarse.scenario, Workshop(), RestToRestSpline(40), lambda line: None)
+    search = Search(coarse.scenario, SolverCache(), RestToRestSpline(40), lambda line: None)
     best = finer(search, [coarse, coarse], 40)
     assert best is not None and best.solved
     names = [record.name for record in search.records]
     assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh on 40, N = 40"]
-    assert best.origin is coarse and len(search.plans) == len({round(p.result.objective, 2) for p in search.plans})
+    assert best.origin is coarse and len(search.candidates) == len(
+        {round(p.result.objective, 2) for p in search.candidates}
+    )
     x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
-    cold = search.solvers[0].solve(x, deadline=np.inf, problem=best.problem, rival=best.result)
-    warm = neighbour(Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    cold = search.solvers[0].solve(x, deadline=np.inf, problem=best.problem, incumbent=best.result)
+    warm = neighbour(SolverCache(), coarse, 40, ("banded",), np.inf, lambda line: None)
     assert warm is not None and cold.iterations > 1.5 * warm.result.iterations
     assert abs(search.records[2].iterations - cold.iterations) <= 2
     led = [result.objective for result in (warm.result, cold) if result.converged]
@@ -116,7 +118,7 @@ def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Plan) 
 
 
 def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
-    coarse: Plan, monkeypatch: pytest.MonkeyPatch
+    coarse: Candidate, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """IPOPT is no help against a rival; from 20 intervals 80 are reached even if 40 fail."""
     solve = Banded.solve
@@ -132,18 +134,18 @@ def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_
     with monkeypatch.context() as patch:
         patch.setattr(Banded, "solve", fail_on_40)
         patch.setattr(Ipopt, "solve", never)
-        rival = coarse.result
-        assert neighbour(Workshop(), coarse, 40, ("banded", "ipopt"), np.inf, lambda line: None, rival) is None
+        incumbent = coarse.result
+        assert neighbour(SolverCache(), coarse, 40, ("banded", "ipopt"), np.inf, lambda line: None, incumbent) is None
     monkeypatch.setattr(Banded, "solve", fail_on_40)
     monkeypatch.setattr(Ipopt, "solve", lambda self, x0, **_: replace(coarse.result, converged=False))
-    search = Search(replace(coarse.scenario), Workshop(), RestToRestSpline(80), lambda line: None)
+    search = Search(replace(coarse.scenario), SolverCache(), RestToRestSpline(80), lambda line: None)
     best = finer(search, [coarse], 80)
     assert best is not None and best.solved and best.origin is coarse
 
 
-def test_multipliers_keep_the_sum_over_time(coarse: Plan) -> None:
+def test_multipliers_keep_the_sum_over_time(coarse: Candidate) -> None:
     """A multiplier times what it stands for is the objective's change, whatever the mesh: equal sums, row by row."""
-    there = neighbour(Workshop(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    there = neighbour(SolverCache(), coarse, 40, ("banded",), np.inf, lambda line: None)
     assert there is not None
     assert distance(coarse, there) < 0.2
     moved = transfer_multipliers(coarse.problem, coarse.result.multipliers, there.problem)
@@ -160,7 +162,7 @@ def test_multipliers_keep_the_sum_over_time(coarse: Plan) -> None:
     assert np.linalg.norm(moved.g[balance] - exact) < 0.5 * np.linalg.norm(exact)
 
 
-def _plan(intervals: int, objective: float, bent: float = 0.0, rest: str = "velocity") -> Any:
+def _candidate(intervals: int, objective: float, bent: float = 0.0, rest: str = "velocity") -> Any:
     spline = RestToRestSpline(intervals, rest)
     control = bent * np.sin(np.pi * spline.greville)[:, None]
     checks = {"closure between knots": 2e-4, "balance between knots": 0.05, "torque limits between knots": 0.0}
@@ -177,7 +179,7 @@ def _plan(intervals: int, objective: float, bent: float = 0.0, rest: str = "velo
 def test_limit_of_an_error_of_the_rests_order_is_exact(here: int, there: int, rest: str, order: int) -> None:
     """Closed form: J(N) = 100 + 60 / N**p; the bar is what is left of it on the finer mesh."""
     accuracy = compared(
-        *(_plan(n, 100 + 60 / n**order, rest=rest) for n in (here, there)),
+        *(_candidate(n, 100 + 60 / n**order, rest=rest) for n in (here, there)),
     )
     assert accuracy.objective_limit == pytest.approx(100.0)
     assert accuracy.objective_error == pytest.approx(0.6 / here**order)
@@ -185,7 +187,7 @@ def test_limit_of_an_error_of_the_rests_order_is_exact(here: int, there: int, re
 
 
 def test_another_motion_gives_no_estimate_and_says_so() -> None:
-    accuracy = compared(_plan(20, 100.0), _plan(10, 110.0, bent=2.0))
+    accuracy = compared(_candidate(20, 100.0), _candidate(10, 110.0, bent=2.0))
     assert not accuracy.estimated
     assert "another" in accuracy.remark
 
@@ -199,11 +201,11 @@ def test_what_is_unmet_is_named_with_its_amount() -> None:
 
 
 def test_rivals_are_what_the_mesh_cannot_tell_apart() -> None:
-    plans = [_plan(20, objective) for objective in (100.0, 100.001, 105.0, 130.0)]
+    candidates = [_candidate(20, objective) for objective in (100.0, 100.001, 105.0, 130.0)]
     known = Accuracy(0.0, 0.0, 0.0, 90.0, 0.1)
-    assert [plan.result.objective for plan in rivals(plans, plans[0], known)] == [100.0, 105.0]
-    everything = rivals(plans, plans[0], Accuracy(0.0, 0.0, 0.0))
-    assert [plan.result.objective for plan in everything] == [100.0, 105.0, 130.0]
+    assert [candidate.result.objective for candidate in rivals(candidates, candidates[0], known)] == [100.0, 105.0]
+    everything = rivals(candidates, candidates[0], Accuracy(0.0, 0.0, 0.0))
+    assert [candidate.result.objective for candidate in everything] == [100.0, 105.0, 130.0]
 
 
 def test_accuracy_is_written_read_and_told(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:

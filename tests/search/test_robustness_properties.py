@@ -101,7 +101,7 @@ def _moved(pattern: Solution, scenario: Scenario, seed: int) -> Solution:
         scenario=scenario,
         time=np.linspace(0.0, scenario.duration, knots),
         agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
-        held=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
+        object=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
         urdfs={URDF_FILES[name]: text for name, text in texts.items()},
     )
 
@@ -120,7 +120,7 @@ def test_any_motion_of_any_scenario_is_read_back_as_it_was_written(
     read = load_result(tmp_path / "result")
     assert read.scenario == scenario
     assert read.urdfs == written.urdfs
-    for one, other in ((read.held, written.held), *zip(read.agents, written.agents, strict=True)):
+    for one, other in ((read.object, written.object), *zip(read.agents, written.agents, strict=True)):
         for field in dataclasses.fields(one):
             if isinstance(value := getattr(other, field.name), np.ndarray):
                 np.testing.assert_array_equal(getattr(one, field.name), value, err_msg=field.name)
@@ -159,7 +159,7 @@ def chains(draw: st.DrawFn) -> Agent:
     text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes={}, grasp="random_grasp"))
     ones = np.ones(len(rows))
     limits = JointLimits(-3.0 * ones, 3.0 * ones, 10.0 * ones, -100.0 * ones, 100.0 * ones)
-    return Agent("random", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
+    return Agent("random", "robot", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
 
 
 @settings(SLOW, max_examples=60)

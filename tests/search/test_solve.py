@@ -45,7 +45,7 @@ def test_best_of_the_starts_is_kept_and_all_are_told(solved: Callable[..., Any])
 
 
 def _numbers(solution: Solution) -> list[np.ndarray]:
-    held = solution.held
+    held = solution.object
     arrays = [x for agent in solution.agents for x in (agent.q, agent.v, agent.a, agent.tau, agent.grasp_force)]
     return [*arrays, held.pose, held.pose_velocity, held.pose_acceleration, np.array(solution.objective)]
 
@@ -72,7 +72,7 @@ def test_papers_own_problem_solves_and_is_verified(solved: Callable[..., Any]) -
     assert solution.solved, solution.status
     assert solution.objective == pytest.approx(sum(solution.objective_terms[who] for who in ("human", "robot")))
     # Eq. 17 with a tolerance: every row within 1 N and 1 Nm, the sixth too.
-    assert np.abs(solution.held.wrench).max() <= 1.0 + 1e-6
+    assert np.abs(solution.object.wrench).max() <= 1.0 + 1e-6
     # Without the small weights less torque is needed than with them.
     assert solution.objective < 900.0
 
@@ -97,7 +97,7 @@ def test_raising_and_lowering_are_the_same_motion_backwards(solved: Callable[...
 def test_free_distance_moves_where_the_torques_are_least(solved: Callable[..., Any]) -> None:
     solution = solved("table5_free", "solver.starts=2").solution
     assert solution.solved, solution.status
-    assert np.abs(solution.held.pose[[0, -1], 0] - (0.40 + 0.225)).max() > 0.02
+    assert np.abs(solution.object.pose[[0, -1], 0] - (0.40 + 0.225)).max() > 0.02
     assert solution.objective < solved("table5").solution.objective
 
 
@@ -160,12 +160,12 @@ def test_no_solution_is_exit_3_with_the_reason_and_the_best_iterate_marked(
 def test_time_for_compiling_is_not_taken_from_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock: a solver that takes long to build, as one that compiles at first use, leaves the whole limit."""
     from liftopt.collocation.spline import RestToRestSpline
-    from liftopt.search import cache as workshop
+    from liftopt.search import cache as cache
     from liftopt.search.solve import Search
 
-    monkeypatch.setattr(workshop, "Banded", lambda *_: time.sleep(1.0))
+    monkeypatch.setattr(cache, "Banded", lambda *_: time.sleep(1.0))
     scenario = load_scenario("table5", ["solver.name=banded", "solver.time_limit=10"])
-    search = Search(scenario, workshop.Workshop(), RestToRestSpline(8), lambda line: None)
+    search = Search(scenario, cache.SolverCache(), RestToRestSpline(8), lambda line: None)
     assert search.prepared - search.began > 1.0
     assert search.deadline - search.prepared == pytest.approx(7.0)
     assert search.end - search.prepared == pytest.approx(9.0)

@@ -12,7 +12,7 @@ import pytest
 
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.search import variations
-from liftopt.search.initial_guess import Start
+from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.variations import NEAR, TURN, vary
 
 
@@ -28,10 +28,10 @@ class Table:
         self.objectives = objectives
         self.asked: list[tuple[float, float]] = []
 
-    def solve(self, x0: np.ndarray, *, rival: SolverResult, **_: object) -> SolverResult:
+    def solve(self, x0: np.ndarray, *, incumbent: SolverResult, **_: object) -> SolverResult:
         """Return what the table has for the start."""
         value = float(x0[0])
-        self.asked.append((value, rival.objective))
+        self.asked.append((value, incumbent.objective))
         return _result(value, self.objectives.get(value, np.nan), value in self.objectives)
 
 
@@ -40,8 +40,8 @@ def tenfold(monkeypatch: pytest.MonkeyPatch) -> int:
     """The variations of x are 10 x, 10 x + 1, ... of the first kind only; return how many there are."""
     count = 12
 
-    def ten(problem: object, x: np.ndarray) -> Iterator[Start]:
-        return iter([Start(str(n), 10.0 * x + n) for n in range(count)])
+    def ten(problem: object, x: np.ndarray) -> Iterator[InitialGuess]:
+        return iter([InitialGuess(str(n), 10.0 * x + n) for n in range(count)])
 
     monkeypatch.setattr(variations, "mirrored", ten)
     monkeypatch.setattr(variations, "rests", lambda *_: [])
@@ -64,7 +64,7 @@ def test_the_best_is_varied_first_and_none_that_is_too_far_above_it(tenfold: int
     ones, twos = ([10.0 * k + n for n in range(tenfold)] for k in (1, 2))
     # A turn of the first makes it worth 10.5, two 11.0: only then it is the second's.
     assert asked == [*ones, *twos]
-    assert {rival for _, rival in solver.asked} == {10.0}
+    assert {incumbent for _, incumbent in solver.asked} == {10.0}
 
 
 def test_what_is_better_is_varied_next_and_becomes_the_rival_of_the_next_turn(tenfold: int) -> None:
@@ -73,7 +73,7 @@ def test_what_is_better_is_varied_next_and_becomes_the_rival_of_the_next_turn(te
     assert asked[:TURN] == [10.0 + n for n in range(TURN)]
     assert asked[TURN : 2 * TURN] == [130.0 + n for n in range(TURN)]
     assert asked[2 * TURN : 3 * TURN] == [1310.0 + n for n in range(TURN)]
-    assert [rival for _, rival in solver.asked[::TURN]][:3] == [10.0, 8.0, 7.0]
+    assert [incumbent for _, incumbent in solver.asked[::TURN]][:3] == [10.0, 8.0, 7.0]
 
 
 def test_it_ends_after_so_many_without_a_gain_and_at_once_without_time_or_patience(tenfold: int) -> None:
@@ -94,9 +94,9 @@ def test_kinds_take_turns_and_each_is_made_when_it_is_its_turn() -> None:
     made: list[str] = []
 
     def kind(name: str, count: int) -> Any:
-        def make() -> Iterator[Start]:
+        def make() -> Iterator[InitialGuess]:
             made.append(name)
-            return iter([Start(f"{name}{n}", np.zeros(1)) for n in range(count)])
+            return iter([InitialGuess(f"{name}{n}", np.zeros(1)) for n in range(count)])
 
         return make
 

@@ -48,8 +48,8 @@ def test_all_six_rows_of_balance_hold(wrench: Any) -> None:
     """Pinocchio: with point grasps the moment about the table's x axis is left over."""
     solution, agents = wrench.solution, wrench.solution.agents
     assert solution.solved, solution.status
-    assert np.abs(solution.held.wrench).max() < 1e-6
-    assert np.abs(solution.held.pose[:, 3]).max() <= np.radians(10.0) + 1e-9
+    assert np.abs(solution.object.wrench).max() < 1e-6
+    assert np.abs(solution.object.pose[:, 3]).max() <= np.radians(10.0) + 1e-9
     for agent, most in zip(agents, (10.0, 5.0), strict=True):
         moment = np.linalg.norm(agent.grasp_moment, axis=1)
         assert 0.1 < moment.max() <= most + 1e-6
@@ -71,7 +71,7 @@ def test_file_keeps_the_moments(wrench: Any) -> None:
         np.testing.assert_array_equal(one.tau, other.tau)
         np.testing.assert_allclose(one.ground_moment, other.ground_moment, rtol=0, atol=1e-12)
         assert other.grasp.moments
-    np.testing.assert_allclose(wrench.solution.held.wrench, again.held.wrench, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(wrench.solution.object.wrench, again.object.wrench, rtol=0, atol=1e-12)
     moments = summary_dict(again)["grasp_moment"]
     assert moments["robot"]["limit_Nm"] == 5.0 and moments["human"]["peak_Nm"] <= 10.0 + 1e-6
 

@@ -32,7 +32,7 @@ def test_a_cubic_comes_back_exactly() -> None:
 def test_finer_grid_shows_the_closure_that_the_verification_found_on_the_solvers_spline(solution: Any) -> None:
     dense = refined(solution, 10)
     gaps = [
-        np.linalg.norm(agent.grasp_position - dense.held.grasp_position[:, i], axis=1).max()
+        np.linalg.norm(agent.grasp_position - dense.object.grasp_position[:, i], axis=1).max()
         for i, agent in enumerate(dense.agents)
     ]
     found = solution.verification.check("closure between knots").value
@@ -45,4 +45,4 @@ def test_knots_stay_what_they_were(solution: Any) -> None:
     for fine, coarse in zip(dense.agents, solution.agents, strict=True):
         for name in ("q", "v", "a", "tau", "grasp_force"):
             np.testing.assert_allclose(getattr(fine, name)[::4], getattr(coarse, name), atol=1e-9)
-    np.testing.assert_allclose(dense.held.pose[::4], solution.held.pose, atol=1e-12)
+    np.testing.assert_allclose(dense.object.pose[::4], solution.object.pose, atol=1e-12)

@@ -38,9 +38,9 @@ def test_every_point_is_a_verified_optimum_of_its_weights(front: Front, scenario
     """Efforts and the weighted objective by Pinocchio's torques, as the verification has them."""
     assert front.missing == ()
     for point in front.points + front.dominated:
-        assert point.plan.solved
+        assert point.candidate.solved
         assert sum(point.weights) == pytest.approx(2.0)
-        solution = point.plan.solution([], {"setup": 0.0, "total": 0.0})
+        solution = point.candidate.solution([], {"setup": 0.0, "total": 0.0})
         assert solution.objective_terms["human"] == pytest.approx(point.efforts[0])
         assert solution.objective_terms["robot"] == pytest.approx(point.efforts[1])
         assert 0.0 < point.share < 1.0
@@ -61,23 +61,23 @@ def test_no_point_of_the_front_is_beaten_and_the_weights_are_obeyed(front: Front
 def test_points_are_no_worse_than_the_lift_solved_by_itself(front: Front, scenario: Scenario) -> None:
     """At the scenario's own weights, from the same starts and from both neighbours."""
     middle = next(p for p in front.points + front.dominated if p.weights[0] == pytest.approx(1.0))
-    assert middle.plan.result.objective <= lift(scenario).objective * (1 + 1e-6)
+    assert middle.candidate.result.objective <= lift(scenario).objective * (1 + 1e-6)
 
 
 def test_no_motion_of_another_point_is_better_for_a_points_weights(front: Front) -> None:
     """What polishing is for: each motion is a candidate at all other weights, and none wins by much."""
     for point in front.points:
         for other in front.points:
-            swapped = other.plan.result.objective
+            swapped = other.candidate.result.objective
             swapped += sum((a - b) * e for a, b, e in zip(point.weights, other.weights, other.efforts, strict=True))
-            assert point.plan.result.objective <= swapped * (1 + 1e-6)
+            assert point.candidate.result.objective <= swapped * (1 + 1e-6)
 
 
 def test_all_points_stand_on_one_mesh_where_one_takes_a_finer_one() -> None:
     """N = 8 leaves the grasps too far apart between knots, as the lift by itself shows."""
     coarse = load_scenario("table5_free", ["solver.starts=1", "solver.tries=0", "solver.intervals=8"])
     found = pareto_front(coarse, 2)
-    (intervals,) = {point.plan.spline.intervals for point in found.points}
+    (intervals,) = {point.candidate.spline.intervals for point in found.points}
     assert intervals in (16, 32)
     assert lift(coarse).intervals in (16, 32)
 

@@ -18,8 +18,8 @@ from liftopt.commands.sensitivity import study_dict, table
 from liftopt.control.replanning import Replanner
 from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario, load_scenario, scenario_to_toml
-from liftopt.search.cache import Workshop
-from liftopt.search.candidate import Plan
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
 from liftopt.search.solve import lift
 from liftopt.solution.summary import limit_share
 from liftopt.studies.sensitivity import PARAMETERS, Parameter, Study, changed, figures, study
@@ -28,17 +28,17 @@ ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
 
 
 @pytest.fixture(scope="module")
-def workshop() -> Workshop:
-    return Workshop()
+def cache() -> SolverCache:
+    return SolverCache()
 
 
 @pytest.fixture(scope="module")
-def replanner(workshop: Workshop) -> Replanner:
-    return Replanner(workshop=workshop)
+def replanner(cache: SolverCache) -> Replanner:
+    return Replanner(cache=cache)
 
 
 @pytest.fixture(scope="module")
-def plan(replanner: Replanner) -> Plan:
+def candidate(replanner: Replanner) -> Candidate:
     scenario = load_scenario("table5_near", [*ENTRIES, "solver.tolerance=1e-8"])
     assert replanner.solve(scenario).solved
     assert replanner.latest is not None
@@ -46,32 +46,42 @@ def plan(replanner: Replanner) -> Plan:
 
 
 @pytest.fixture(scope="module")
-def near(plan: Plan, workshop: Workshop) -> Study:
-    return study(plan, workshop)
+def near(candidate: Candidate, cache: SolverCache) -> Study:
+    return study(candidate, cache)
 
 
-def _tangent(plan: Plan, parameter: Parameter, step: float) -> tuple[Tangent, list[Problem]]:
+def _tangent(candidate: Candidate, parameter: Parameter, step: float) -> tuple[Tangent, list[Problem]]:
     """The optimum's own derivative, which no solve takes part in, and the problems below and above."""
-    workshop = Workshop()  # of its own: problems are not shared
-    sides = [workshop.problem(changed(plan.scenario, parameter, change), plan.spline) for change in (-step, step)]
-    return Optimum(plan.problem, plan.result.x, plan.result.multipliers).tangent(*sides, step), sides
+    cache = SolverCache()  # of its own: problems are not shared
+    sides = [
+        cache.problem(changed(candidate.scenario, parameter, change), candidate.spline) for change in (-step, step)
+    ]
+    return Optimum(candidate.problem, candidate.result.x, candidate.result.multipliers).tangent(*sides, step), sides
 
 
-def test_slopes_of_small_changes_are_those_of_the_optimality_conditions(plan: Plan, workshop: Workshop) -> None:
+def test_slopes_of_small_changes_are_those_of_the_optimality_conditions(
+    candidate: Candidate, cache: SolverCache
+) -> None:
     """Within what no limit changes sides in; implicit differentiation of the KKT conditions is the oracle."""
     tangents, small = {}, []
     for parameter in PARAMETERS:
         value = {"stature": 1.75, "body mass": 75.0, "object mass": 2.0, "duration": 2.0}.get(parameter.name, 1.0)
-        tangent, _ = _tangent(plan, parameter, 1e-4 * value)
+        tangent, _ = _tangent(candidate, parameter, 1e-4 * value)
         small.append(replace(parameter, change=min(tangent.reach / 3, 1e-3 * value)))
-        tangents[parameter.name] = _tangent(plan, parameter, small[-1].change)
-    found = study(plan, workshop, small)
+        tangents[parameter.name] = _tangent(candidate, parameter, small[-1].change)
+    found = study(candidate, cache, small)
     assert [s.parameter for s in found.sensitivities] == small
     for s in found.sensitivities:
         assert s.is_reliable
         tangent, problems = tangents[s.parameter.name]
         low, high = (
-            figures(replace(plan, problem=problem, result=replace(plan.result, x=plan.result.x + change * tangent.x)))
+            figures(
+                replace(
+                    candidate,
+                    problem=problem,
+                    result=replace(candidate.result, x=candidate.result.x + change * tangent.x),
+                )
+            )
             for problem, change in zip(problems, (-s.change, s.change), strict=True)
         )
         for kind in ("objective", "effort", "share", "peak", "used"):
@@ -82,15 +92,15 @@ def test_slopes_of_small_changes_are_those_of_the_optimality_conditions(plan: Pl
                 assert s.slopes[name] == pytest.approx(expected[name], abs=5e-3 * largest), (s.parameter.name, name)
 
 
-def test_slopes_are_those_of_the_lift_solved_again(near: Study, plan: Plan, replanner: Replanner) -> None:
+def test_slopes_are_those_of_the_lift_solved_again(near: Study, candidate: Candidate, replanner: Replanner) -> None:
     """At half the change, where the promise is at most a tenth off, or next to nothing."""
     assert [s.parameter for s in near.sensitivities] == list(PARAMETERS)
     assert sum(s.is_reliable for s in near.sensitivities) >= 8
     for s in filter(lambda s: s.is_reliable, near.sensitivities):
         found = []
         for change in (-s.change / 2, s.change / 2):
-            replanner.latest = plan
-            again = replanner.replan(changed(plan.scenario, s.parameter, change))
+            replanner.latest = candidate
+            again = replanner.replan(changed(candidate.scenario, s.parameter, change))
             assert again is not None
             found.append(figures(again))
         for name in ("objective", "effort human", "effort robot", "share human", *(f"used {j}" for j in near.busiest)):
@@ -105,9 +115,11 @@ def test_objective_slopes_by_solving_again_and_by_envelope_agree(near: Study) ->
         assert s.slopes["objective"] == pytest.approx(s.envelope, rel=0.05, abs=0.002 * near.figures["objective"])
 
 
-def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: Study, plan: Plan) -> None:
+def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: Study, candidate: Candidate) -> None:
     """By the definition, at ten times the knots; one limit of a person's joint is up to twice the other."""
-    for agent in plan.at(np.linspace(0.0, plan.problem.task.duration, 10 * plan.spline.intervals + 1)).agents:
+    for agent in candidate.at(
+        np.linspace(0.0, candidate.problem.task.duration, 10 * candidate.spline.intervals + 1)
+    ).agents:
         names = [agent.joint_names[j] for j in np.flatnonzero(agent.moving)]
         uses = {}
         for column, name in enumerate(names):
@@ -143,39 +155,46 @@ DURATION = next(p for p in PARAMETERS if p.name == "duration")
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (lambda plan: replace(plan, result=replace(plan.result, x=plan.result.x + 0.5)), "another optimum"),
-        (lambda plan: None, "no verified lift is found"),
+        (
+            lambda candidate: replace(candidate, result=replace(candidate.result, x=candidate.result.x + 0.5)),
+            "another optimum",
+        ),
+        (lambda candidate: None, "no verified lift is found"),
     ],
 )
 def test_beyond_a_jump_or_a_failure_a_smaller_change_is_taken(
-    spoil: Callable[[Plan], Plan | None], said: str, plan: Plan, workshop: Workshop, monkeypatch: pytest.MonkeyPatch
+    spoil: Callable[[Candidate], Candidate | None],
+    said: str,
+    candidate: Candidate,
+    cache: SolverCache,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Solves of more than 30 ms longer are spoilt: the largest change without is 25 ms."""
     true = Replanner.replan
 
-    def replan(self: Replanner, scenario: Scenario) -> Plan | None:
+    def replan(self: Replanner, scenario: Scenario) -> Candidate | None:
         again = true(self, scenario)
         return spoil(again) if again is not None and scenario.duration > 2.03 else again
 
     monkeypatch.setattr(Replanner, "replan", replan)
-    (found,) = study(plan, workshop, (DURATION,)).sensitivities
+    (found,) = study(candidate, cache, (DURATION,)).sensitivities
     assert said in found.beyond
     assert found.change <= 0.025
 
 
 def test_what_never_is_in_proportion_is_marked_with_the_reason(
-    plan: Plan, workshop: Workshop, monkeypatch: pytest.MonkeyPatch
+    candidate: Candidate, cache: SolverCache, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The person's effort made to rise both ways, as at a kink: no step helps."""
     true = liftopt.studies.sensitivity.figures
 
-    def kinked(of: Plan) -> dict[str, float]:
+    def kinked(of: Candidate) -> dict[str, float]:
         found = true(of)
         found["effort human"] *= 1 + 2 * abs(of.scenario.duration - 2.0)
         return found
 
     monkeypatch.setattr("liftopt.studies.sensitivity.figures", kinked)
-    found = study(plan, workshop, (DURATION,))
+    found = study(candidate, cache, (DURATION,))
     (row,) = found.sensitivities
     assert not row.is_reliable
     assert row.change == 0.1
@@ -191,13 +210,13 @@ def test_shares_sum_to_one_whatever_changes(near: Study) -> None:
         assert s.slopes["share human"] == pytest.approx(-s.slopes["share robot"], abs=1e-6)
 
 
-def test_free_and_impossible_parameters_are_left_out_with_a_reason(replanner: Replanner, workshop: Workshop) -> None:
+def test_free_and_impossible_parameters_are_left_out_with_a_reason(replanner: Replanner, cache: SolverCache) -> None:
     scenario = load_scenario("table5_free", ENTRIES)
     replanner.solve(scenario)
     assert replanner.latest is not None
     grasp = next(p for p in PARAMETERS if p.name == "grasp from feet")
     least = Parameter("balance", ("limits.balance_tolerance",), 0.1, "N, Nm")
-    found = study(replanner.latest, workshop, (grasp, least))
+    found = study(replanner.latest, cache, (grasp, least))
     assert not found.sensitivities
     assert "free" in found.left_out[0][1]
     assert "must be a number from 0" in found.left_out[1][1]

@@ -54,7 +54,7 @@ def test_bodies_are_where_pinocchio_puts_the_splines_joints(solution: Any, playb
 
 
 def test_the_table_follows_its_own_spline(solution: Any, playback: Playback) -> None:
-    held, track = solution.held, playback.bodies[solution.held.name]
+    held, track = solution.object, playback.bodies[solution.object.name]
     for k in range(0, len(playback.time), 7):
         pose = _between(solution.time, held.pose, held.pose_velocity, held.pose_acceleration, playback.time[k])
         roll, pitch, yaw = (pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", pose[3:], strict=True))
@@ -66,7 +66,7 @@ def test_the_table_follows_its_own_spline(solution: Any, playback: Playback) -> 
 
 def test_hands_stay_on_the_table(solution: Any, playback: Playback) -> None:
     table = solution.scenario.table
-    track = playback.bodies[solution.held.name]
+    track = playback.bodies[solution.object.name]
     for side, force in zip((-1.0, 1.0), playback.forces.values(), strict=True):
         edge = np.array([side * table.depth / 2, 0.0, -table.height / 2])
         grasp = [p + pin.Quaternion(u).toRotationMatrix() @ edge for p, u in zip(*_rows(track), strict=True)]

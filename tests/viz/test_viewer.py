@@ -76,7 +76,7 @@ def _viewing(folder: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str
 def test_it_serves_the_very_page_and_nothing_outlives_it(
     folder: Path, tmp_path: Path, stop: signal.Signals, status: int
 ) -> None:
-    view(folder, html=tmp_path / "page.html", say=lambda line: None)
+    view(folder, html=tmp_path / "page.html", progress=lambda line: None)
     with _viewing(folder) as (process, url):
         assert urllib.request.urlopen(url).read() == (tmp_path / "page.html").read_bytes()
         with pytest.raises(urllib.error.HTTPError, match="404"):
@@ -155,7 +155,7 @@ def test_a_browser_with_windows_is_opened_and_one_in_the_terminal_is_not(
     for browser, lines in ((Windowed(), 1), (webbrowser.GenericBrowser("false"), 2)):
         said: list[str] = []
         monkeypatch.setattr(webbrowser, "get", lambda browser=browser: browser)
-        view(folder, say=said.append)
+        view(folder, progress=said.append)
         assert len(said) == lines
     assert len(opened) == 1
     assert opened[0].startswith(f"http://{HOST}:")
@@ -190,11 +190,11 @@ def test_the_manufacturers_meshes_take_the_robots_place(folder: Path, tmp_path: 
         mesh = f'<mesh filename="package://sawyer_description/meshes/{name}.DAE"/>'
         links.append(f'<link name="{name}"><visual><origin xyz="0 0 0"/><geometry>{mesh}</geometry></visual></link>')
     (tmp_path / DESCRIPTION).write_text(f"<robot>{''.join(links)}</robot>", encoding="utf-8")
-    view(folder, html=tmp_path / "page.html", sawyer=tmp_path, say=lambda line: None)
+    view(folder, html=tmp_path / "page.html", sawyer=tmp_path, progress=lambda line: None)
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
     for path in ("ground/pedestal", "robot_Q1/head", "robot_Q1/right_l0", "robot_Q7/right_l6"):
         assert f'"path":"/lift/body/{path}"' in page
     assert "l0_shoulder" not in page
     (tmp_path / "meshes" / "right_l3.STL").write_bytes(b"")
     with pytest.raises(InputError, match="right_l3"):
-        view(folder, html=tmp_path / "page.html", sawyer=tmp_path, say=lambda line: None)
+        view(folder, html=tmp_path / "page.html", sawyer=tmp_path, progress=lambda line: None)

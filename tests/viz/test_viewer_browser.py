@@ -29,7 +29,7 @@ def lift(solved: Callable[..., Any]) -> Any:
 @pytest.fixture(scope="module")
 def opened(lift: Any, open_page: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory) -> Any:
     file = tmp_path_factory.mktemp("page") / "lift.html"
-    view(lift.folder, html=file, say=lambda line: None)
+    view(lift.folder, html=file, progress=lambda line: None)
     assert file.stat().st_size < LARGEST
     return open_page(file)
 
@@ -60,8 +60,8 @@ def test_parts_are_where_forward_kinematics_puts_them(opened: Any, lift: Any, kn
         for j, name in enumerate(list(agent.model.names)[1:], start=1):
             shown = _placement(opened, f"/lift/body/{name}")
             np.testing.assert_allclose(shown, data.oMi[j].homogeneous, atol=DRAWN, err_msg=name)
-    table = _placement(opened, f"/lift/body/{solution.held.name}")
-    np.testing.assert_allclose(table[:3, 3], solution.held.pose[knot, :3], atol=DRAWN)
+    table = _placement(opened, f"/lift/body/{solution.object.name}")
+    np.testing.assert_allclose(table[:3, 3], solution.object.pose[knot, :3], atol=DRAWN)
 
 
 def test_a_force_arrow_starts_at_the_hand_and_points_along_the_force(opened: Any, lift: Any) -> None:
@@ -251,12 +251,12 @@ def test_two_lifts_side_by_side_and_one_as_a_ghost(
     heavy = solved("table5", *CHEAP, "table.mass=3", f"name={LONG_NAME}")
     for ghost, aside in ((False, APART), (True, 0.0)):
         file = tmp_path / f"{ghost}.html"
-        view(lift.folder, other=heavy.folder, ghost=ghost, html=file, say=lambda line: None)
+        view(lift.folder, other=heavy.folder, ghost=ghost, html=file, progress=lambda line: None)
         opened = open_page(file)
         opened.run(f"liftopt.seek({lift.solution.time[5]})")
         for root, solution, y in (("/lift", lift.solution, 0.0), ("/other", heavy.solution, aside)):
-            shown = _placement(opened, f"{root}/body/{solution.held.name}")[:3, 3]
-            np.testing.assert_allclose(shown, solution.held.pose[5, :3] + [0.0, y, 0.0], atol=DRAWN)
+            shown = _placement(opened, f"{root}/body/{solution.object.name}")[:3, 3]
+            np.testing.assert_allclose(shown, solution.object.pose[5, :3] + [0.0, y, 0.0], atol=DRAWN)
         _names_tell_the_lifts_apart(opened, ghost)
         material = "liftopt.viewer.scene_tree.find(['{}', 'body', 'table', 'top', '<object>']).object.material"
         assert opened.run(f"{material.format('lift')}.opacity") == 1

@@ -29,7 +29,7 @@ from liftopt.collocation.dynamics import KnotFunctions, Topology
 FLAGS = ("-O1", "-fPIC", "-shared", "-fno-math-errno")
 ROLES = ("value", "gradient", "jacobian", "curvature", "squares")
 Builder = Callable[[Topology], KnotFunctions]
-Say = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -69,14 +69,14 @@ class Kernel:
         return int(self.squares.size1_in(1))
 
 
-def load_kernels(requests: Sequence[tuple[Builder, Topology]], say: Say | None = None) -> list[Kernel]:
+def load_kernels(requests: Sequence[tuple[Builder, Topology]], progress: Progress | None = None) -> list[Kernel]:
     """Return a kernel for each (builder, topology), compiling those that neither the package nor the cache has.
 
     Args:
         requests: what to load; equal topologies share one kernel.
-        say: called with a line of progress when there is something to wait for.
+        progress: called with a line of progress when there is something to wait for.
     """
-    say = say or (lambda line: None)
+    progress = progress or (lambda line: None)
     keys = [kernel_key(builder, topology) for builder, topology in requests]
     found: dict[str, Kernel] = {}
     for key in dict.fromkeys(keys):
@@ -84,7 +84,7 @@ def load_kernels(requests: Sequence[tuple[Builder, Topology]], say: Say | None =
             found[key] = kernel
     missing = {key: request for key, request in zip(keys, requests, strict=True) if key not in found}
     if missing:
-        found.update(_build(missing, cache_folder(), say))
+        found.update(_build(missing, cache_folder(), progress))
     return [found[key] for key in keys]
 
 
@@ -117,16 +117,16 @@ def kernel_key(builder: Builder, topology: Topology) -> str:
     return digest.hexdigest()[:32]
 
 
-def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, say: Say) -> dict[str, Kernel]:
+def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, progress: Progress) -> dict[str, Kernel]:
     compiler = find_compiler()
-    say("building the equations of motion")
+    progress("building the equations of motion")
     functions = {key: builder(topology) for key, (builder, topology) in missing.items()}
     interpreted = {key: _kernel([getattr(f, role) for role in ROLES], compiled=False) for key, f in functions.items()}
     if compiler is None:
-        say("no C compiler found: CasADi's virtual machine evaluates the dynamics, several times slower")
+        progress("no C compiler found: CasADi's virtual machine evaluates the dynamics, several times slower")
         return interpreted
     kept = "once; kept for later runs" if folder is not None else "there is no private cache folder to keep it in"
-    say(f"compiling the equations of motion ({kept})")
+    progress(f"compiling the equations of motion ({kept})")
     kernels = dict(interpreted)
     with tempfile.TemporaryDirectory(prefix="liftopt-") as work:
         jobs = {key: _start_compiler(compiler, Path(work), key, f) for key, f in functions.items()}
@@ -134,12 +134,12 @@ def _build(missing: dict[str, tuple[Builder, Topology]], folder: Path | None, sa
             _, errors = process.communicate()
             built = Path(work) / f"{key}.so"
             if process.returncode != 0 or not built.exists():
-                say(f"the C compiler failed ({(errors or 'no message').strip().splitlines()[-1:]}): using the VM")
+                progress(f"the C compiler failed ({(errors or 'no message').strip().splitlines()[-1:]}): using the VM")
                 continue
             if kernel := keep(built, folder, partial(_load, key)):
                 kernels[key] = kernel
             else:
-                say("what the C compiler made cannot be loaded: using CasADi's virtual machine")
+                progress("what the C compiler made cannot be loaded: using CasADi's virtual machine")
     return kernels
 
 

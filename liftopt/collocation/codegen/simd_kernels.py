@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from liftopt.collocation.codegen.kernel_cache import cache_folder, find_library, keep
-from liftopt.collocation.codegen.kernels import Builder, Say, baseline_flags, find_compiler, kernel_key
+from liftopt.collocation.codegen.kernels import Builder, Progress, baseline_flags, find_compiler, kernel_key
 from liftopt.collocation.dynamics import KnotFunctions, Topology
 
 SYMBOLS = ("wide_value", "wide_derivatives", "wide_lanes")
@@ -83,7 +83,7 @@ UNARY, BINARY = ("sin", "cos", "sqrt", "fabs"), ("casadi_fmax", "casadi_fmin")
 
 
 @dataclass(frozen=True)
-class WideKernel:
+class SimdKernel:
     """Machine code for several knots of one topology, with CasADi's calling convention; see ``lanes_source``.
 
     Attributes:
@@ -98,24 +98,26 @@ class WideKernel:
     derivatives: int
 
 
-def load_wide(requests: Sequence[tuple[Builder, Topology]], say: Say | None = None) -> list[WideKernel] | None:
+def load_simd_kernels(
+    requests: Sequence[tuple[Builder, Topology]], progress: Progress | None = None
+) -> list[SimdKernel] | None:
     """Return a wide kernel for each (builder, topology), or None where one cannot be made.
 
     Those that neither the package nor the cache has are compiled.
 
     Args:
         requests: what to load; equal topologies share one kernel.
-        say: called with a line of progress when there is something to wait for.
+        progress: called with a line of progress when there is something to wait for.
     """
-    say = say or (lambda line: None)
+    progress = progress or (lambda line: None)
     keys = [_key(builder, topology) for builder, topology in requests]
-    found: dict[str, WideKernel] = {}
+    found: dict[str, SimdKernel] = {}
     for key in dict.fromkeys(keys):
         if (kernel := find_library(key, _load)) is not None:
             found[key] = kernel
     missing = {key: request for key, request in zip(keys, requests, strict=True) if key not in found}
     if missing:
-        found.update(_compile(missing, cache_folder(), say))
+        found.update(_compile(missing, cache_folder(), progress))
     return [found[key] for key in keys] if all(key in found for key in keys) else None
 
 
@@ -136,11 +138,13 @@ def _extensions() -> tuple[str, ...]:
     return tuple(f"-m{name}" for name in EXTENSIONS if name in has)
 
 
-def _compile(missing: Mapping[str, tuple[Builder, Topology]], folder: Path | None, say: Say) -> dict[str, WideKernel]:
+def _compile(
+    missing: Mapping[str, tuple[Builder, Topology]], folder: Path | None, progress: Progress
+) -> dict[str, SimdKernel]:
     compiler = find_compiler()
     if compiler is None:
         return {}
-    say("compiling the equations of motion for several knots at once (once; kept for later runs)")
+    progress("compiling the equations of motion for several knots at once (once; kept for later runs)")
     found = {}
     with tempfile.TemporaryDirectory(prefix="liftopt-") as work:
         jobs = {}
@@ -154,18 +158,18 @@ def _compile(missing: Mapping[str, tuple[Builder, Topology]], folder: Path | Non
             if process.wait() == 0 and built.exists() and (kernel := keep(built, folder, _load)):
                 found[key] = kernel
             else:
-                say("the C compiler cannot make code for several knots at once")
+                progress("the C compiler cannot make code for several knots at once")
     return found
 
 
-def _load(path: Path) -> WideKernel | None:
+def _load(path: Path) -> SimdKernel | None:
     try:
         library = ctypes.CDLL(str(path))
         lanes = ctypes.c_int.in_dll(library, "wide_lanes").value
         value, derivatives = (ctypes.cast(library[name], ctypes.c_void_p).value or 0 for name in SYMBOLS[:2])
     except (OSError, AttributeError, ValueError):
         return None
-    return WideKernel(library, lanes, value, derivatives)
+    return SimdKernel(library, lanes, value, derivatives)
 
 
 def lanes_source(functions: KnotFunctions) -> str:

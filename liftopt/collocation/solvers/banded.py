@@ -22,10 +22,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.codegen.kernels import Say
+from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, wide_kernels
-from liftopt.collocation.solvers.result import BEATEN, STOPPED, Multipliers, SolverResult
+from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, kernels_for_simd
+from liftopt.collocation.solvers.result import PRUNED, STOPPED, Multipliers, SolverResult
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
@@ -70,7 +70,9 @@ class BandedOptions:
 class Banded:
     """The interior point on one problem; ``solve`` may be called from many starts."""
 
-    def __init__(self, problem: Problem, options: BandedOptions | None = None, say: Say | None = None) -> None:
+    def __init__(
+        self, problem: Problem, options: BandedOptions | None = None, progress: Progress | None = None
+    ) -> None:
         """Build the solver; ``say`` hears of it when kernels must be compiled first.
 
         Raises:
@@ -85,7 +87,7 @@ class Banded:
         self._current: Problem | None = None
         intervals = len(problem.mesh.phase) - 1
         self._mu_share = (MU_INTERVALS / intervals) ** 2 if intervals else 1.0
-        self._kernels = wide_kernels(problem, say)
+        self._kernels = kernels_for_simd(problem, progress)
         if self._kernels:
             self._nlp = kernel_nlp(_liftopt_banded, problem, self._kernels)
         else:
@@ -105,7 +107,7 @@ class Banded:
         deadline: float,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
-        rival: SolverResult | None = None,
+        incumbent: SolverResult | None = None,
         most: int | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``."""
@@ -113,9 +115,9 @@ class Banded:
         self._set_parameters(problem)
         most = self.options.max_iterations if most is None else min(most, self.options.max_iterations)
         more: dict[str, Any] = {"max_iterations": most}
-        if rival is not None:
-            patience = min(most, self._patience(rival))
-            more = {"rival": rival.objective if rival.converged else np.inf, "max_iterations": patience}
+        if incumbent is not None:
+            patience = min(most, self._patience(incumbent))
+            more = {"rival": incumbent.objective if incumbent.converged else np.inf, "max_iterations": patience}
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
@@ -123,7 +125,7 @@ class Banded:
             near = INTERPOLATED | {"mu": share * INTERPOLATED["mu"]} if warm.interpolated else WARM
             arguments = near | more | {"warm": (warm.x, warm.g)}
         found = self._run(x0, problem, deadline, arguments)
-        if warm is not None and found["status"] not in (SOLVED, STOPPED, BEATEN):
+        if warm is not None and found["status"] not in (SOLVED, STOPPED, PRUNED):
             # What was a neighbour in the data need not be one in its solution.
             first, found = found, self._run(x0, problem, deadline, cold)
             for count in ("iterations", "seconds", "evaluation_seconds"):
@@ -140,9 +142,9 @@ class Banded:
             evaluation_seconds=found["evaluation_seconds"],
         )
 
-    def _patience(self, rival: SolverResult) -> int:
+    def _patience(self, incumbent: SolverResult) -> int:
         """Return how many iterations a start gets that has a rival."""
-        return max(PATIENCE, PATIENCE_SHARE * rival.iterations) if rival.converged else LONGER
+        return max(PATIENCE, PATIENCE_SHARE * incumbent.iterations) if incumbent.converged else LONGER
 
     def _run(self, x0: Array, problem: Problem, deadline: float, arguments: dict[str, Any]) -> dict[str, Any]:
         lower, upper = problem.bounds()

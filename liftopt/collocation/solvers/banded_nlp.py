@@ -10,20 +10,20 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.assembly import Nlp
-from liftopt.collocation.codegen.kernels import Say
-from liftopt.collocation.codegen.simd_kernels import WideKernel, load_wide
+from liftopt.collocation.codegen.kernels import Progress
+from liftopt.collocation.codegen.simd_kernels import SimdKernel, load_simd_kernels
 from liftopt.collocation.problem import Problem, kernel_requests
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
 
 
-def wide_kernels(problem: Problem, say: Say | None = None) -> list[WideKernel] | None:
+def kernels_for_simd(problem: Problem, progress: Progress | None = None) -> list[SimdKernel] | None:
     """Return the kernels of a problem's parts for several knots at once, or None where they cannot be made."""
-    return load_wide(kernel_requests(problem.team.agents, problem.team.held), say)
+    return load_simd_kernels(kernel_requests(problem.team.agents, problem.team.object), progress)
 
 
-def kernel_nlp(module: Any, problem: Problem, kernels: list[WideKernel]) -> Any:
+def kernel_nlp(module: Any, problem: Problem, kernels: list[SimdKernel]) -> Any:
     """Return the problem as the wide kernels evaluate it."""
     layout, mesh = problem.layout, problem.mesh
     return module.KernelNlp(
@@ -32,19 +32,19 @@ def kernel_nlp(module: Any, problem: Problem, kernels: list[WideKernel]) -> Any:
         basis=np.stack(mesh.basis, axis=1),
         control=layout.control.ravel().astype(np.int32),
         force=layout.force.ravel().astype(np.int32),
-        parts=[_part(problem, i, wide) for i, wide in enumerate(kernels)],
+        parts=[_part(problem, i, simd) for i, simd in enumerate(kernels)],
         rows=knot_rows(problem),
         linear=_arrays(problem.constraints.linear),
     )
 
 
-def _part(problem: Problem, part: int, wide: WideKernel) -> dict[str, Any]:
+def _part(problem: Problem, part: int, simd: SimdKernel) -> dict[str, Any]:
     """Return what the extension takes of an agent or of the object."""
     kernel, layout = problem.team.kernels[part], problem.layout
     coordinates = layout.columns(part)
     return dict(
-        value=wide.value,
-        derivatives=wide.derivatives,
+        value=simd.value,
+        derivatives=simd.derivatives,
         first=coordinates.start,
         coordinates=coordinates.stop - coordinates.start,
         forces=layout.kernel_forces(part).astype(np.int32),

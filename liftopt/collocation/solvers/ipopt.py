@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.assembly import Nlp
-from liftopt.collocation.codegen.simd_kernels import WideKernel
+from liftopt.collocation.codegen.simd_kernels import SimdKernel
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.solvers.simd_nlp import wide_nlp
@@ -56,20 +56,20 @@ class Ipopt:
     """IPOPT on one problem; ``solve`` may be called from many starts."""
 
     def __init__(
-        self, problem: Problem, options: IpoptOptions | None = None, wide: Sequence[WideKernel] | None = None
+        self, problem: Problem, options: IpoptOptions | None = None, simd: Sequence[SimdKernel] | None = None
     ) -> None:
         """Build the solver.
 
         Args:
             problem: what to solve.
             options: see there.
-            wide: the parts' kernels for several knots at once, built in half the time and quicker to evaluate; None:
+            simd: the parts' kernels for several knots at once, built in half the time and quicker to evaluate; None:
                 CasADi maps the one-knot kernels.
 
         Raises:
             SolverError: CasADi's IPOPT cannot be had.
         """
-        self.problem, self.options, self._wide = problem, options or IpoptOptions(), wide
+        self.problem, self.options, self._simd = problem, options or IpoptOptions(), simd
         self._stop = _Stop(len(problem.bounds()[0]), problem.constraints.linear.shape[0], len(problem.parameters))
         self._solvers: dict[bool, Any] = {}
 
@@ -80,7 +80,7 @@ class Ipopt:
         deadline: float,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
-        rival: SolverResult | None = None,
+        incumbent: SolverResult | None = None,
         most: int | None = None,
     ) -> SolverResult:
         """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration; a rival changes nothing.
@@ -135,7 +135,7 @@ class Ipopt:
 
     @cached_property
     def _nlp(self) -> Nlp:
-        return self.problem.nlp if self._wide is None else wide_nlp(self.problem, self._wide)
+        return self.problem.nlp if self._simd is None else wide_nlp(self.problem, self._simd)
 
     def _solver(self, warm: bool) -> Any:
         if warm not in self._solvers:

@@ -12,7 +12,7 @@ from liftopt.collocation.solvers.result import Solver
 T = TypeVar("T")
 
 
-def abreast(solvers: Sequence[Solver], jobs: Sequence[Callable[[Solver], T]]) -> Iterator[T]:
+def parallel_map(solvers: Sequence[Solver], jobs: Sequence[Callable[[Solver], T]]) -> Iterator[T]:
     """Do jobs that take a solver; yield what they return, in their order.
 
     Whoever asks for no more drops the jobs that wait; those at work end first.

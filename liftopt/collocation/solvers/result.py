@@ -14,7 +14,7 @@ Array = npt.NDArray[np.float64]
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
 # Of a solver that was given a rival: no failure, but not worth going on.
-BEATEN = "Worse_Than_Rival"
+PRUNED = "Worse_Than_Rival"
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Solver(Protocol):
         deadline: float,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
-        rival: SolverResult | None = None,
+        incumbent: SolverResult | None = None,
         most: int | None = None,
     ) -> SolverResult:
         """Solve from ``x0``.
@@ -77,7 +77,7 @@ class Solver(Protocol):
             deadline: ``time.monotonic`` value past which the solver stops.
             warm: multipliers of a neighbouring solution to start from.
             problem: another problem of the same structure, for its bounds and parameters; None: the bound one.
-            rival: where another start led. Where nothing lower is in sight the solver may give up (``BEATEN``), or
+            incumbent: where another start led. Where nothing lower is in sight the solver may give up (``PRUNED``), or
                 where it takes much longer.
             most: iterations after which it gives up; None: as many as its options say.
 

@@ -18,7 +18,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.assembly import Nlp, to_sparsity
-from liftopt.collocation.codegen.simd_kernels import WideKernel
+from liftopt.collocation.codegen.simd_kernels import SimdKernel
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.scatter import hessian_pattern, jacobian_pattern
 
@@ -29,7 +29,7 @@ ALIGNMENT = 64
 _KERNEL = ctypes.CFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 4, ctypes.c_int)
 
 
-def wide_nlp(problem: Problem, kernels: Sequence[WideKernel]) -> Nlp:
+def wide_nlp(problem: Problem, kernels: Sequence[SimdKernel]) -> Nlp:
     """Return the problem's NLP as callbacks on wide kernels; they share arrays, so one thread at a time may call."""
     knots = _Knots(problem, kernels)
     dense = ca.Sparsity.dense
@@ -90,9 +90,9 @@ class _Callback(ca.Callback):
 class _Knots:
     """Values and derivatives at all knots, at the x and p last asked for, and their maps to the NLP."""
 
-    def __init__(self, problem: Problem, wide: Sequence[WideKernel]) -> None:
+    def __init__(self, problem: Problem, simd: Sequence[SimdKernel]) -> None:
         parts, constraints, weights = [p.kernel for p in problem.parts], problem.constraints, problem.mesh.weights
-        self.parts, self.weights, knots, lanes = parts, weights, len(weights), wide[0].lanes
+        self.parts, self.weights, knots, lanes = parts, weights, len(weights), simd[0].lanes
         selects = [part.select for part in problem.parts]
         blocks = [part.jacobian.sparsity_out(0) for part in parts]
         triangles = [[part.curvature.sparsity_out(0), part.squares.sparsity_out(0)] for part in parts]
@@ -136,15 +136,15 @@ class _Knots:
         ]
         self.x, self.p, self.has_slopes = np.full(self.rows.shape[1], np.nan), np.full(self.n_p, np.nan), False
         self.f_slope: Array | None = None
-        self.value_calls, self.slope_calls, self.all_calls = self._calls(wide, blocks, triangles)
+        self.value_calls, self.slope_calls, self.all_calls = self._calls(simd, blocks, triangles)
 
-    def _calls(self, wide: Sequence[WideKernel], blocks: Sequence[Any], triangles: Sequence[Any]) -> list[list[Any]]:
+    def _calls(self, simd: Sequence[SimdKernel], blocks: Sequence[Any], triangles: Sequence[Any]) -> list[list[Any]]:
         """Return calls for values, for slopes, and for slopes and curvatures, each a kernel and its pointers."""
-        lanes, value, slope, everything = wide[0].lanes, [], [], []
+        lanes, value, slope, everything = simd[0].lanes, [], [], []
         y, c, pull, slopes, curvatures = (
             a.ctypes.data for a in (self.y, self.c, self.pull, self.slopes, self.curvatures)
         )
-        for i, kernel in enumerate(wide):
+        for i, kernel in enumerate(simd):
             run_value, run_derivatives = _KERNEL(kernel.value), _KERNEL(kernel.derivatives)
             p, part = self.given[i].ctypes.data, self.parts[i]
             for _ in range(-(-len(self.weights) // lanes)):

@@ -238,14 +238,14 @@ def _check_size(recording: Recording, scale: float, units: str | None) -> None:
     key, value = ("units", units) if units else (recording.source, recording.units)
     if not SMALLEST_CLOUD <= typical * scale <= LARGEST_CLOUD:
         fitting = [name for name in ("m", "cm", "mm") if SMALLEST_CLOUD <= typical * METRES[name] <= LARGEST_CLOUD]
-        remedy = ""
+        change = ""
         if fitting:
-            remedy = f'; the mapping\'s units = "{fitting[0]}" would make it {typical * METRES[fitting[0]]:.2f} m'
+            change = f'; the mapping\'s units = "{fitting[0]}" would make it {typical * METRES[fitting[0]]:.2f} m'
         raise InputError(
             key,
             value,
             f"cannot be the unit of length: half of the markers would lie within {_length(typical * scale)} of their "
-            f"middle{remedy}",
+            f"middle{change}",
         )
     extent = float(np.nanmax(np.abs(recording.points))) * scale
     if extent > LARGEST_ROOM:

@@ -92,7 +92,7 @@ def dry_run(
     goal_time: float,
     trials: int = 3,
     seed: int = 0,
-    say: Callable[[str], None] | None = None,
+    progress: Callable[[str], None] | None = None,
 ) -> DryRun:
     """Simulate the action server and the arm; the same arguments give the same numbers.
 
@@ -102,7 +102,7 @@ def dry_run(
         goal_time: how long after the motion's end the server goes on [s].
         trials: how many.
         seed: of what differs between them.
-        say: hears one line a trial.
+        progress: hears one line a trial.
 
     Raises:
         InputError: the solution is not solved, or MuJoCo is not installed.
@@ -115,8 +115,8 @@ def dry_run(
     time = PERIOD * np.arange(first, last + 1, dtype=float)
     runs = []
     for trial in range(trials):
-        if say is not None:
-            say(f"trial {trial + 1} of {trials} in {mode} mode")
+        if progress is not None:
+            progress(f"trial {trial + 1} of {trials} in {mode} mode")
         runs.append(_trial(solution, trajectory, plan, mode, goal_time, time, np.random.default_rng([seed, trial])))
     return DryRun(
         mode, trajectory, goal_time, time, plan.at(plan.position, time), plan.at(plan.torque, time),

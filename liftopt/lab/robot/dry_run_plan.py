@@ -87,7 +87,7 @@ def _ends_repeated(rows: Array) -> Array:
 def _at_rest(dense: Solution, k: int) -> tuple[Array, Array, Array]:
     """Return the robot's torques (7,), force and moment on its gripper (3,) that hold the object still where it is."""
     robot, held = dense.agents[1], object_of(dense.scenario, dense.urdfs)
-    arms = dense.held.grasp_position[k] - dense.held.pose[k, :3]
+    arms = dense.object.grasp_position[k] - dense.object.pose[k, :3]
     columns, loads = [], []
     for agent, arm in zip(dense.agents, arms, strict=True):
         columns.append(np.vstack([np.eye(3), cross(arm, np.eye(3)).T]))

@@ -96,13 +96,14 @@ def human_agent(subject: Subject, urdf: str | None = None) -> Agent:
     limits, text = human_limits(subject.sex), urdf or human_urdf(subject)
     return Agent(
         name=NAME,
+        kind="person",
         urdf=text,
         model=load_model(text),
-        pinned=tuple(joint_name(NAME, row) for row in VIRTUAL),
+        locked_joints=tuple(joint_name(NAME, row) for row in VIRTUAL),
         grasp_frame=GRASP,
         limits=limits,
         posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
-        keep_in=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.0),
+        workspace=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.0),
     )
 
 

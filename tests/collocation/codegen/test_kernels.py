@@ -16,7 +16,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation import kernels, libraries
+from liftopt.collocation.codegen import kernel_cache, kernels
 from liftopt.collocation.codegen.kernel_cache import cache_folder
 from liftopt.collocation.codegen.kernels import ROLES, Kernel, find_compiler, load_kernels
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions
@@ -37,8 +37,8 @@ def tiny_topology() -> Topology:
     return Topology.of(model, ("tip",))
 
 
-def load_tiny(say: Callable[[str], None] | None = None) -> Kernel:
-    return load_kernels([(agent_functions, tiny_topology())], say)[0]
+def load_tiny(progress: Callable[[str], None] | None = None) -> Kernel:
+    return load_kernels([(agent_functions, tiny_topology())], progress)[0]
 
 
 def assert_right(kernel: Kernel) -> None:
@@ -189,7 +189,7 @@ def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) 
     assert compiler is not None
     subprocess.run([*compiler, "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
     path.chmod(0o600)
-    libraries._seal(path)
+    kernel_cache._seal(path)
     assert_right(load_tiny())
 
 
@@ -197,7 +197,7 @@ def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) 
 def test_file_that_others_can_write_is_not_loaded(cache: Path) -> None:
     path = library(cache)
     path.chmod(0o622)
-    assert libraries.find_library(path.stem, str) is None
+    assert kernel_cache.find_library(path.stem, str) is None
     assert load_tiny().compiled
     assert stat.S_IMODE(path.stat().st_mode) & 0o022 == 0
 

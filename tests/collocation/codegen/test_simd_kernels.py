@@ -11,7 +11,7 @@ import pytest
 
 from liftopt.collocation.codegen import simd_kernels as lanes
 from liftopt.collocation.codegen.kernels import find_compiler
-from liftopt.collocation.codegen.simd_kernels import WideKernel, load_wide
+from liftopt.collocation.codegen.simd_kernels import SimdKernel, load_simd_kernels
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
 
 Built = dict[str, tuple[pin.Model, Topology, KnotFunctions]]
@@ -29,12 +29,14 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def kernels(cache: Path, knot_functions: Built, monkeypatch: pytest.MonkeyPatch) -> list[WideKernel]:
+def kernels(cache: Path, knot_functions: Built, monkeypatch: pytest.MonkeyPatch) -> list[SimdKernel]:
     """Return those of a random arm of four joints and of a box with three grasps."""
     if find_compiler() is None:
         pytest.skip("no C compiler")
     monkeypatch.setenv("LIFTOPT_CACHE", str(cache))
-    loaded = load_wide([(agent_functions, knot_functions["arm"][1]), (object_functions, knot_functions["box"][1])])
+    loaded = load_simd_kernels(
+        [(agent_functions, knot_functions["arm"][1]), (object_functions, knot_functions["box"][1])]
+    )
     assert loaded is not None
     return loaded
 
@@ -59,7 +61,7 @@ def call(address: int, arguments: list[np.ndarray], sizes: list[int], lanes: int
 
 @pytest.mark.parametrize(("index", "name"), [(0, "arm"), (1, "box")])
 def test_every_lane_is_the_function_of_one_knot(
-    kernels: list[WideKernel], knot_functions: Built, rng: np.random.Generator, index: int, name: str
+    kernels: list[SimdKernel], knot_functions: Built, rng: np.random.Generator, index: int, name: str
 ) -> None:
     kernel, (_, topology, functions) = kernels[index], knot_functions[name]
     lanes, p = kernel.lanes, np.concatenate([[1.7], topology.parameters])
@@ -83,7 +85,7 @@ def test_every_lane_is_the_function_of_one_knot(
 
 @pytest.mark.parametrize("extensions", [(), ("avx", "avx2", "fma")], ids=["baseline", "avx2"])
 def test_vectors_of_any_width_give_the_same_bits(
-    kernels: list[WideKernel],
+    kernels: list[SimdKernel],
     knot_functions: Built,
     rng: np.random.Generator,
     cache: Path,
@@ -95,14 +97,14 @@ def test_vectors_of_any_width_give_the_same_bits(
     monkeypatch.setattr(lanes, "EXTENSIONS", extensions)
     if len(lanes._extensions()) < len(extensions):
         pytest.skip("this processor has no such vectors")
-    other = load_wide([(object_functions, topology)])
+    other = load_simd_kernels([(object_functions, topology)])
     assert other is not None
     y = rng.normal(size=(8, functions.value.size1_in(0)))
     m = rng.normal(size=(8, functions.value.size1_out(0)))
     p = np.tile(np.concatenate([[1.7], topology.parameters]), (8, 1))
     sizes = [functions.jacobian.nnz_out(0), functions.curvature.nnz_out(0)]
 
-    def evaluated(kernel: WideKernel) -> list[bytes]:
+    def evaluated(kernel: SimdKernel) -> list[bytes]:
         parts = [
             [*call(kernel.value, [y[k], p[k]], [m.shape[1]], kernel.lanes),
              *call(kernel.derivatives, [y[k], p[k], m[k]], sizes, kernel.lanes)]
@@ -113,14 +115,14 @@ def test_vectors_of_any_width_give_the_same_bits(
     assert evaluated(other[0]) == evaluated(kernels[1])
 
 
-def test_they_are_compiled_once(kernels: list[WideKernel], knot_functions: Built, cache: Path) -> None:
+def test_they_are_compiled_once(kernels: list[SimdKernel], knot_functions: Built, cache: Path) -> None:
     files = {f.name: f.stat().st_ino for f in cache.iterdir()}
     lines: list[str] = []
-    assert load_wide([(agent_functions, knot_functions["arm"][1])], lines.append) is not None
+    assert load_simd_kernels([(agent_functions, knot_functions["arm"][1])], lines.append) is not None
     assert not lines and {f.name: f.stat().st_ino for f in cache.iterdir()} == files
 
 
-def test_a_damaged_file_is_compiled_anew(kernels: list[WideKernel], knot_functions: Built, cache: Path) -> None:
+def test_a_damaged_file_is_compiled_anew(kernels: list[SimdKernel], knot_functions: Built, cache: Path) -> None:
     for file in cache.iterdir():
         content = bytearray(file.read_bytes())
         content[len(content) // 2] ^= 0xFF
@@ -128,7 +130,7 @@ def test_a_damaged_file_is_compiled_anew(kernels: list[WideKernel], knot_functio
         file.write_bytes(bytes(content))
         file.chmod(0o600)
     lines: list[str] = []
-    assert load_wide([(object_functions, knot_functions["box"][1])], lines.append) is not None
+    assert load_simd_kernels([(object_functions, knot_functions["box"][1])], lines.append) is not None
     assert any("compiling" in line for line in lines)
 
 
@@ -137,16 +139,16 @@ def test_without_a_compiler_there_are_none(
 ) -> None:
     monkeypatch.setenv("CC", "")
     monkeypatch.setenv("LIFTOPT_CACHE", str(tmp_path))
-    assert load_wide([(agent_functions, knot_functions["arm"][1])]) is None
+    assert load_simd_kernels([(agent_functions, knot_functions["arm"][1])]) is None
 
 
 def test_another_processor_does_not_find_them(
-    kernels: list[WideKernel], knot_functions: Built, monkeypatch: pytest.MonkeyPatch
+    kernels: list[SimdKernel], knot_functions: Built, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Without a compiler there it has none, rather than code that it cannot run."""
     monkeypatch.setattr(lanes, "EXTENSIONS", ())
     monkeypatch.setenv("CC", "")
-    assert load_wide([(object_functions, knot_functions["box"][1])]) is None
+    assert load_simd_kernels([(object_functions, knot_functions["box"][1])]) is None
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from liftopt.errors import SolverError
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario, load_scenario, with_overrides
-from liftopt.search.initial_guess import PostureSolver, Start, blend, naive_start, seed_coordinates
+from liftopt.search.initial_guess import InitialGuess, PostureSolver, blend, naive_guess, seed_coordinates
 from liftopt.search.solve import lift
 
 extension = pytest.importorskip("_liftopt_banded")
@@ -52,7 +52,7 @@ def banded(small_lift: Problem) -> Banded:
 
 
 @pytest.fixture(scope="session")
-def found(banded: Banded, starts: list[Start]) -> SolverResult:
+def found(banded: Banded, starts: list[InitialGuess]) -> SolverResult:
     return banded.solve(starts[0].x, deadline=np.inf)
 
 
@@ -90,14 +90,16 @@ def test_warm_start_of_a_neighbouring_task(
 
 
 def test_a_problem_with_other_rows_is_refused(
-    banded: Banded, starts: list[Start], small_lift: Problem, make_task: Callable[..., LiftTask]
+    banded: Banded, starts: list[InitialGuess], small_lift: Problem, make_task: Callable[..., LiftTask]
 ) -> None:
     other = replace(small_lift, task=make_task(agent_weights=(1.0, 1.0), max_grasp_force=50.0))
     with pytest.raises(SolverError, match="other constraint rows"):
         banded.solve(starts[0].x, deadline=np.inf, problem=other)
 
 
-def test_limits_of_time_and_iterations_are_reported(small_lift: Problem, banded: Banded, starts: list[Start]) -> None:
+def test_limits_of_time_and_iterations_are_reported(
+    small_lift: Problem, banded: Banded, starts: list[InitialGuess]
+) -> None:
     late = banded.solve(starts[0].x, deadline=time.monotonic() - 1.0)
     assert not late.converged and late.status == "User_Requested_Stop" and late.iterations == 0
     few = Banded(small_lift, BandedOptions(max_iterations=3)).solve(starts[0].x, deadline=np.inf)
@@ -105,7 +107,7 @@ def test_limits_of_time_and_iterations_are_reported(small_lift: Problem, banded:
 
 
 def test_infeasible_task_is_not_called_solved(
-    banded: Banded, starts: list[Start], small_lift: Problem, make_task: Callable[..., LiftTask]
+    banded: Banded, starts: list[InitialGuess], small_lift: Problem, make_task: Callable[..., LiftTask]
 ) -> None:
     """A metre out of reach."""
     task = make_task(agent_weights=(1.0, 1.0), x=-1.5)
@@ -119,11 +121,11 @@ def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., Li
         patch.setenv("CC", "")
         patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
         banded = Banded(problem, BandedOptions(max_iterations=3))
-    result = banded.solve(naive_start(problem).x, deadline=np.inf)
+    result = banded.solve(naive_guess(problem).x, deadline=np.inf)
     assert result.iterations == 3 and np.isfinite(result.objective)
 
 
-def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Start]) -> None:
+def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[InitialGuess]) -> None:
     """As many iterations by the wide kernels and by CasADi's functions through Python, where both take Newton's matrix.
 
     That is near an optimum: elsewhere the one leaves out curvature, which the other cannot tell from the rest.
@@ -132,11 +134,11 @@ def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Start]
     assert optimum.converged
     near = optimum.x + 1e-5 * np.random.default_rng(0).standard_normal(len(optimum.x))
     options = BandedOptions(max_iterations=8)
-    wide = Banded(small_lift, options)
+    simd = Banded(small_lift, options)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("liftopt.collocation.solvers.banded.wide_kernels", lambda *_: None)
+        patch.setattr("liftopt.collocation.solvers.banded.kernels_for_simd", lambda *_: None)
         slow = Banded(small_lift, options)
-    one, other = (solver.solve(near, deadline=np.inf, warm=optimum.multipliers) for solver in (wide, slow))
+    one, other = (solver.solve(near, deadline=np.inf, warm=optimum.multipliers) for solver in (simd, slow))
     assert one.converged and other.converged and abs(one.iterations - other.iterations) <= 1
     np.testing.assert_allclose(one.objective, other.objective, rtol=1e-9)
     np.testing.assert_allclose(one.x, other.x, rtol=0, atol=1e-5)
@@ -180,7 +182,7 @@ def test_linear_systems_of_a_fine_mesh_need_hardly_any_refinement() -> None:
     assert solver.details["refinements"] < result.iterations
 
 
-def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts: list[Start]) -> None:
+def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts: list[InitialGuess]) -> None:
     """Pinocchio: its KKT error is below the share of the objective that was asked for, its rows hold all the same."""
     share = 1e-4
     exact, rough = (
@@ -197,7 +199,7 @@ def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts:
 
 def test_far_from_a_solution_it_finds_one_where_ipopt_stays(small_lift: Problem, banded: Banded, ipopt: Ipopt) -> None:
     """From the naive start Newton's matrix is indefinite and curvature is left out; the end must not tell."""
-    found = banded.solve(naive_start(small_lift).x, deadline=np.inf)
+    found = banded.solve(naive_guess(small_lift).x, deadline=np.inf)
     assert found.converged and kkt_error(small_lift, found.x, found.multipliers).error <= TOLERANCE
     stays = ipopt.solve(found.x, deadline=np.inf, warm=found.multipliers)
     assert stays.converged and stays.objective == pytest.approx(found.objective, rel=1e-6)
@@ -230,7 +232,7 @@ def test_knot_rows_make_up_the_constraints(small_lift: Problem) -> None:
 
 
 def test_objective_and_rows_agree_with_casadis(
-    small_lift: Problem, banded: Banded, starts: list[Start], make_task: Callable[..., LiftTask]
+    small_lift: Problem, banded: Banded, starts: list[InitialGuess], make_task: Callable[..., LiftTask]
 ) -> None:
     """And with those of a neighbouring task, set without building anything."""
     other = replace(small_lift, task=make_task(agent_weights=(1.0, 1.0), duration=2.5))
@@ -243,14 +245,16 @@ def test_objective_and_rows_agree_with_casadis(
         assert banded.objective(starts[0].x, problem) == found
 
 
-def test_kernels_need_no_assembled_problem(team: Team, make_task: Callable[..., LiftTask], starts: list[Start]) -> None:
+def test_kernels_need_no_assembled_problem(
+    team: Team, make_task: Callable[..., LiftTask], starts: list[InitialGuess]
+) -> None:
     """Neither the solver nor a solution touches the functions that CasADi would assemble."""
     problem = Problem(team, make_task(agent_weights=(1.0, 1.0)), RestToRestSpline(12).mesh())
-    Banded(problem, BandedOptions(max_iterations=1)).solve(naive_start(problem).x, deadline=np.inf)
+    Banded(problem, BandedOptions(max_iterations=1)).solve(naive_guess(problem).x, deadline=np.inf)
     assert "nlp" not in vars(problem)
 
 
-def test_two_threads_solve_on_two_solvers(small_lift: Problem, found: SolverResult, starts: list[Start]) -> None:
+def test_two_threads_solve_on_two_solvers(small_lift: Problem, found: SolverResult, starts: list[InitialGuess]) -> None:
     """The same numbers as alone."""
     from concurrent.futures import ThreadPoolExecutor
 

@@ -17,7 +17,7 @@ from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResul
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
-from liftopt.search.initial_guess import Start
+from liftopt.search.initial_guess import InitialGuess
 
 
 def test_small_lift_is_solved(solved: SolverResult, small_lift: Problem) -> None:
@@ -47,7 +47,9 @@ def test_solution_is_feasible(solved: SolverResult, small_lift: Problem) -> None
         positions = space.basis(fine) @ control[:, columns]
         assert (positions >= limits.q_lower - 1e-8).all() and (positions <= limits.q_upper + 1e-8).all()
         assert (np.abs(speed[:, columns]) <= limits.velocity + 1e-7).all()
-        lever = team.held.model.frames[team.held.model.getFrameId(team.held.grasp_frames[i])].placement.translation
+        lever = team.object.model.frames[
+            team.object.model.getFrameId(team.object.grasp_frames[i])
+        ].placement.translation
         for k in range(len(knots)):
             f = force[k, 3 * i : 3 * i + 3]
             tau = pin.rnea(model, data, q[k, columns], v[k, columns], a[k, columns]).copy()
@@ -59,18 +61,18 @@ def test_solution_is_feasible(solved: SolverResult, small_lift: Problem) -> None
             turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", object_rows[k, 3:], strict=True)]
             gap = point - object_rows[k, :3] - turn[0] @ turn[1] @ turn[2] @ lever
             assert np.abs(gap).max() <= 1e-6
-            if agent.keep_in is not None:
-                assert agent.keep_in.normal @ point >= agent.keep_in.offset - 1e-7
+            if agent.workspace is not None:
+                assert agent.workspace.normal @ point >= agent.workspace.offset - 1e-7
 
 
-def test_deadline_in_the_past_stops_at_once(ipopt: Ipopt, starts: list[Start]) -> None:
+def test_deadline_in_the_past_stops_at_once(ipopt: Ipopt, starts: list[InitialGuess]) -> None:
     began = time.monotonic()
     result = ipopt.solve(starts[0].x, deadline=began - 1.0)
     assert not result.converged and result.status == "User_Requested_Stop" and result.iterations <= 1
     assert time.monotonic() - began < 1.0 and np.isfinite(result.x).all()
 
 
-def test_solver_goes_on_after_a_stop(ipopt: Ipopt, starts: list[Start], solved: SolverResult) -> None:
+def test_solver_goes_on_after_a_stop(ipopt: Ipopt, starts: list[InitialGuess], solved: SolverResult) -> None:
     """A stop leaves nothing behind: the same start gives the same result as before."""
     ipopt.solve(starts[0].x, deadline=time.monotonic() - 1.0)
     again = ipopt.solve(starts[0].x, deadline=np.inf)
@@ -78,7 +80,7 @@ def test_solver_goes_on_after_a_stop(ipopt: Ipopt, starts: list[Start], solved: 
     np.testing.assert_array_equal(again.x, solved.x)
 
 
-def test_iteration_limit_is_reported(small_lift: Problem, starts: list[Start]) -> None:
+def test_iteration_limit_is_reported(small_lift: Problem, starts: list[InitialGuess]) -> None:
     result = Ipopt(small_lift, IpoptOptions(max_iterations=3)).solve(starts[0].x, deadline=np.inf)
     assert not result.converged and result.status == "Maximum_Iterations_Exceeded" and result.iterations == 3
 
@@ -103,7 +105,7 @@ def test_warm_start_of_a_neighbouring_task(
 
 
 def test_a_warm_start_that_fails_becomes_a_cold_one(
-    ipopt: Ipopt, starts: list[Start], solved: SolverResult, monkeypatch: pytest.MonkeyPatch
+    ipopt: Ipopt, starts: list[InitialGuess], solved: SolverResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Two iterations are too few for the warm start; the cold one is the solver's own from there."""
     warmed = Ipopt(ipopt.problem)
@@ -116,7 +118,9 @@ def test_a_warm_start_that_fails_becomes_a_cold_one(
     np.testing.assert_array_equal(found.x, solved.x)
 
 
-def test_a_warm_start_past_its_deadline_stays_stopped(ipopt: Ipopt, starts: list[Start], solved: SolverResult) -> None:
+def test_a_warm_start_past_its_deadline_stays_stopped(
+    ipopt: Ipopt, starts: list[InitialGuess], solved: SolverResult
+) -> None:
     found = ipopt.solve(starts[0].x, deadline=time.monotonic() - 1.0, warm=solved.multipliers)
     assert not found.converged and found.status == STOPPED
 
@@ -132,14 +136,14 @@ def test_a_problem_with_other_rows_is_refused(
         ipopt.solve(solved.x, deadline=np.inf, problem=other)
 
 
-def test_nan_in_the_start_is_a_failure_and_no_exception(ipopt: Ipopt, starts: list[Start]) -> None:
+def test_nan_in_the_start_is_a_failure_and_no_exception(ipopt: Ipopt, starts: list[InitialGuess]) -> None:
     x = starts[0].x.copy()
     x[3] = np.nan
     assert not ipopt.solve(x, deadline=np.inf).converged
 
 
 def test_infeasible_task_does_not_converge(
-    ipopt: Ipopt, starts: list[Start], small_lift: Problem, make_task: Callable[..., LiftTask]
+    ipopt: Ipopt, starts: list[InitialGuess], small_lift: Problem, make_task: Callable[..., LiftTask]
 ) -> None:
     """A metre out of reach."""
     task = make_task(agent_weights=(1.0, 1.0), x=-1.5)

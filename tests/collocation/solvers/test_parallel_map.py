@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from liftopt.collocation.solvers.parallel_map import abreast
+from liftopt.collocation.solvers.parallel_map import parallel_map
 
 
 class Stub:
@@ -41,7 +41,7 @@ def jobs_of(count: int, seconds: float) -> list[Callable[[Any], int]]:
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_results_come_in_the_order_of_the_jobs_each_on_a_solver_of_its_own(count: int) -> None:
     solvers: list[Any] = [Stub() for _ in range(count)]
-    assert list(abreast(solvers, jobs_of(9, 2e-3))) == list(range(9))
+    assert list(parallel_map(solvers, jobs_of(9, 2e-3))) == list(range(9))
     assert sum(solver.jobs for solver in solvers) == 9
     assert all(solver.jobs for solver in solvers)
 
@@ -49,7 +49,7 @@ def test_results_come_in_the_order_of_the_jobs_each_on_a_solver_of_its_own(count
 @pytest.mark.parametrize("count", [1, 2])
 def test_nobody_who_asks_for_no_more_waits_for_the_rest(count: int) -> None:
     solvers: list[Any] = [Stub() for _ in range(count)]
-    found = abreast(solvers, jobs_of(50, 1e-3))
+    found = parallel_map(solvers, jobs_of(50, 1e-3))
     assert next(found) == 0
     found.close()  # type: ignore[attr-defined]
     done = sum(solver.jobs for solver in solvers)
@@ -60,10 +60,10 @@ def test_nobody_who_asks_for_no_more_waits_for_the_rest(count: int) -> None:
 
 def test_no_jobs_and_an_error_of_a_job() -> None:
     solvers: list[Any] = [Stub(), Stub()]
-    assert list(abreast(solvers, [])) == []
+    assert list(parallel_map(solvers, [])) == []
 
     def fail(solver: Any) -> int:
         raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        list(abreast(solvers, [fail, *jobs_of(3, 1e-3)]))
+        list(parallel_map(solvers, [fail, *jobs_of(3, 1e-3)]))
