@@ -24,7 +24,7 @@ FREE = "free"  # stands in a file for a number that is left to the solver; None 
 
 def number(about: str, unit: str, low: float, high: float, *, open_low: bool = False) -> Any:
     """Return the field of a finite number from ``low`` to ``high``; ``open_low`` excludes ``low`` itself."""
-    extra = {"unit": unit}
+    extra: Any = {"unit": unit}
     if open_low:
         return Field(description=about, gt=low, le=high, allow_inf_nan=False, json_schema_extra=extra)
     return Field(description=about, ge=low, le=high, allow_inf_nan=False, json_schema_extra=extra)

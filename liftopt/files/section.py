@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
@@ -13,10 +13,15 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import allowed_in, extra_of, kinds_of, meant_by
 from liftopt.files.suggestions import did_you_mean, nearest
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
 Place = tuple[int | str, ...]
 
 
-class _Telling(type(BaseModel)):  # type: ignore[misc]
+class _Telling(ModelMetaclass):
     """Lets a model that is made in Python refuse in our words; within another model pydantic goes on as usual."""
 
     def __call__(cls, /, *args: Any, **values: Any) -> Any:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import BeforeValidator, Field
 
-from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import entry, number
+from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
-from liftopt.files.suggestions import did_you_mean, nearest
 
 Kind = Literal["person", "robot"]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
-NAMES = "the name of an agent must be 1 to 32 letters, digits or _, a letter first"
+NAMES = "1 to 32 letters, digits or _, a letter first"
 FARTHEST = 10.0  # [m] from the origin
 GRASPS = Literal["point", "wrench"]
 Weight = Annotated[float, number("weight of the squared joint torques in the objective", "", 0.0, 1e6)]
@@ -51,9 +48,7 @@ class Person(Section):
     ] = None
     grasp: Annotated[GRASPS, entry("a force at a point, or a hand that also transmits moments")] = "point"
     # Both largest moments are estimates: about what a wrist holds in the weaker directions, and a small gripper.
-    max_grasp_moment: Annotated[
-        float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)
-    ] = 10.0
+    max_grasp_moment: Annotated[float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 10.0
     grasp_turn_deg: Annotated[float, number("largest turn of the hand in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
     contact: Annotated[Literal["grip", "flat"], entry("a hand that grips, or a flat one that only pushes up")] = "grip"
     friction: Annotated[float, number("friction coefficient under a flat hand", "", 0.01, 10.0)] = 0.5
@@ -87,12 +82,8 @@ class Robot(Section):
     base: Pose = Pose()
     tool: Tool = Tool()
     grasp: Annotated[GRASPS, entry("a force at a point, or a gripper that also transmits moments")] = "point"
-    max_grasp_moment: Annotated[
-        float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)
-    ] = 5.0
-    grasp_turn_deg: Annotated[
-        float, number("largest turn of the gripper in a wrench grasp", "deg", 1.0, 180.0)
-    ] = 30.0
+    max_grasp_moment: Annotated[float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 5.0
+    grasp_turn_deg: Annotated[float, number("largest turn of the gripper in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
     weight: Weight = 1.0
 
     @property
@@ -102,60 +93,5 @@ class Robot(Section):
 
 
 Agent = Person | Robot
+Agents = FrozenTable[Annotated[Agent, Field(discriminator="kind")]]
 KINDS: dict[str, type[Person] | type[Robot]] = {"person": Person, "robot": Robot}
-
-
-class Agents(Mapping[str, Agent]):
-    """The agents by name, in the order of the file; it cannot be changed."""
-
-    def __init__(self, agents: Mapping[str, Agent]) -> None:
-        """Keep a copy of ``agents``."""
-        self._agents = dict(agents)
-
-    def __getitem__(self, name: str) -> Agent:
-        """Return the agent of that name; raises ``KeyError`` with those that there are."""
-        if name not in self._agents:
-            offer = did_you_mean(nearest(str(name), self._agents))
-            raise KeyError(f"no agent {name!r}; there are {', '.join(self._agents)}{offer}")
-        return self._agents[name]
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        return iter(self._agents)
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(self._agents)
-
-    def __eq__(self, other: object) -> bool:
-        """Whether they are the same agents in the same order."""
-        return isinstance(other, Agents) and list(self.items()) == list(other.items())
-
-    def __hash__(self) -> int:
-        """Return a hash of names and agents."""
-        return hash(tuple(self.items()))
-
-    def __repr__(self) -> str:
-        """Return the agents as a mapping is written."""
-        return f"Agents({self._agents!r})"
-
-    @classmethod
-    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Return how pydantic checks the agents: as a table of tables, each told apart by its ``kind``."""
-        tables = handler.generate_schema(dict[str, Annotated[Agent, Field(discriminator="kind")]])
-        given = core_schema.no_info_before_validator_function(_as_dict, tables)
-        return core_schema.no_info_after_validator_function(_named, given)
-
-
-def _as_dict(agents: object) -> object:
-    return dict(agents) if isinstance(agents, Mapping) else agents
-
-
-def _named(agents: dict[str, Agent]) -> Agents:
-    """Return the agents as they are kept; raises ``InputError`` for names that joints and files cannot have."""
-    for name in agents:
-        if not NAME.fullmatch(name):
-            raise InputError(f"agents.{name[:60]!r}", NO_VALUE, NAMES)
-    if not agents:
-        raise InputError("agents", NO_VALUE, "is empty; must hold a table [agents.NAME] for everybody who lifts")
-    return Agents(agents)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import AfterValidator
 
 from liftopt.errors import InputError
 from liftopt.files.entries import entry, number
+from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
-from liftopt.scenario.agents import NAME, Listed
+from liftopt.scenario.agents import NAME, NAMES, Listed
 
-NAMES = "1 to 32 letters, digits or _, a letter first"
 Coordinate = Annotated[float, number("", "m", -2.0, 2.0)]
 
 
@@ -30,3 +29,10 @@ class Box(Section):
     depth: Annotated[float, number("extent from the human grasp to the robot grasp", "m", 0.1, 2.0)]
     width: Annotated[float, number("extent to the side", "m", 0.02, 2.0)]
     height: Annotated[float, number("thickness", "m", 0.001, 1.0)]
+    grasps: Annotated[
+        FrozenTable[Annotated[tuple[Coordinate, Coordinate, Coordinate], Listed]],
+        entry(
+            "where an agent holds it, in its axes from its centre; by default in the middle of the edge that faces it",
+            "a table of NAME = [x, y, z] in m",
+        ),
+    ] = FrozenTable()

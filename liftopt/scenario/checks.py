@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.scenario.agents import NAME, NAMES
+from liftopt.scenario.placement import grasp_points, stand_of
+from liftopt.scenario.urdf_files import urdf_files
 
 if TYPE_CHECKING:
     from liftopt.scenario.model import Scenario
@@ -14,9 +18,14 @@ TAKEN = ("acceleration", "force", "limit", "error", "bar", "schema", "table")
 
 
 def check(scenario: Scenario) -> None:
-    """Raise ``InputError`` where two entries of a scenario contradict each other."""
+    """Raise ``InputError`` where two entries of a scenario contradict each other, or one is missing for another."""
+    if not scenario.agents:
+        raise InputError("agents", NO_VALUE, "is empty; must hold a table [agents.NAME] for everybody who lifts")
     _check_names(scenario)
     _check_weights(scenario)
+    for name in scenario.agents:
+        stand_of(scenario, name)
+    grasp_points(scenario)
     for end in ("start", "end"):
         _check_place(scenario, end)
 
@@ -24,8 +33,14 @@ def check(scenario: Scenario) -> None:
 def _check_names(scenario: Scenario) -> None:
     taken = {*TAKEN, *type(scenario).model_fields, scenario.object.name}
     for name in scenario.agents:
+        if not NAME.fullmatch(name):
+            raise InputError("agents", name[:60], f"the name of an agent must be {NAMES}")
         if name in taken:
-            raise InputError(f"agents.{name}", NO_VALUE, f"{name!r} is taken; give the agent another name")
+            raise InputError("agents", name, "is the name of something else; give the agent another one")
+    files = Counter(urdf_files(scenario).values())
+    for name, file in urdf_files(scenario).items():
+        if files[file] > 1 and name == file.removesuffix(".urdf"):
+            raise InputError("agents", name, f"has the file {file}, as another agent; give it another name")
 
 
 def _check_weights(scenario: Scenario) -> None:

@@ -36,14 +36,14 @@ def nearest_keys(key: str, known: Sequence[str], agents: Mapping[str, str]) -> l
     *outer, last = re.split(r"[./:\s]+", key.lower().replace("-", "_"))
     if outer == ["objective"] and (weight := f"{last.removesuffix('_weight')}.weight") in known:
         return [weight]  # where it stood in schema 1
-    outer, last = [_section(part, agents) for part in outer], ENTRIES.get(last, last)
+    outer, last = [_section(part, agents, known) for part in outer], ENTRIES.get(last, last)
     if outer:
         last = OF_KIND.get(agents.get(outer[0], outer[0]), {}).get(last, last)
     wanted = ".".join([*outer, last])
     if wanted in known:
         return [wanted]
     lasts = {name.rpartition(".")[2] for name in known}
-    for name in [last] if last in lasts else [_section(last, agents), *nearest(last, sorted(lasts))]:
+    for name in [last] if last in lasts else [_section(last, agents, known), *nearest(last, sorted(lasts))]:
         found = [other for other in known if other.rpartition(".")[2] == name]
         if outer:
             section = nearest(outer[0], sorted({other.partition(".")[0] for other in known}))
@@ -54,9 +54,10 @@ def nearest_keys(key: str, known: Sequence[str], agents: Mapping[str, str]) -> l
     return nearest(wanted, known)
 
 
-def _section(word: str, agents: Mapping[str, str]) -> str:
+def _section(word: str, agents: Mapping[str, str], known: Sequence[str]) -> str:
     """Return what a scenario calls a section that somebody called ``word``."""
-    if word in agents:
+    if any(key == word or key.startswith(f"{word}.") for key in known):
         return word
+    word = next(iter(nearest(word, [*KINDS, *SECTIONS])), word)
     of_kind = [name for name, kind in agents.items() if kind == KINDS.get(word)]
     return of_kind[0] if of_kind else SECTIONS.get(word, word)

@@ -6,7 +6,7 @@ SI units; radians unless the key says otherwise. The world frame has Z up and X 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal, overload
@@ -22,8 +22,8 @@ from liftopt.scenario.agents import KINDS, Agent, Agents, Kind, Person, Robot
 from liftopt.scenario.box import Box
 from liftopt.scenario.checks import check
 from liftopt.scenario.file import read_tables
-from liftopt.scenario.keys import AGENTS, OBJECT, Changes, changes_in, path_of, set_entry, shown, value_at
-from liftopt.scenario.listing import DEFAULT_TEAM, fields_of
+from liftopt.scenario.keys import AGENTS, Changes, changes_in, path_of, set_entry, value_at
+from liftopt.scenario.listing import DEFAULT_TEAM, describe, fields_of
 from liftopt.scenario.meant import nearest_keys
 from liftopt.scenario.schema1 import as_schema_2
 from liftopt.scenario.settings import Limits, Objective, Refine, Solver
@@ -75,6 +75,11 @@ class Scenario(Section):
             if agent.kind == kind:
                 return agent
         raise InputError(AGENTS, NO_VALUE, f"hold no {kind}")
+
+    def describe(self) -> Iterator[tuple[str, str]]:
+        """Yield every dotted key and what it holds: meaning, range and default."""
+        yield "schema", f"version of the scenario format: must be {SCHEMA}"
+        yield from describe(type(self), {name: agent.kind for name, agent in self.agents.items()})
 
     def value(self, key: str) -> Any:
         """Return the value at a dotted key; ``human.stature`` addresses an agent by its name.
