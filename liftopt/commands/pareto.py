@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
-from liftopt.scenario.model import scenario_to_dict
 from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
@@ -94,7 +93,7 @@ def front_dict(front: Front) -> dict[str, Any]:
     """Return a front ready for JSON: dominated points are among the others, marked."""
     every = sorted((*front.points, *front.dominated), key=lambda point: point.weights)
     return {
-        "scenario": scenario_to_dict(front.scenario),
+        "scenario": front.scenario.to_dict(),
         "points": [_row(point, point in front.dominated) for point in every],
         "missing_weights": [list(weights) for weights in front.missing],
     }

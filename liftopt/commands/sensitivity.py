@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
-from liftopt.scenario.model import Scenario, scenario_to_dict, with_overrides
+from liftopt.scenario.model import Scenario
 from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
@@ -71,7 +71,7 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
 def study_dict(study: Study) -> dict[str, Any]:
     """Return a study ready for JSON: slopes in the figures' units over the parameter's."""
     return {
-        "scenario": scenario_to_dict(study.candidate.scenario),
+        "scenario": study.candidate.scenario.to_dict(),
         "figures": study.figures,
         "busiest": list(study.busiest),
         "parameters": [
@@ -105,7 +105,7 @@ def _sharp_plan(scenario: Scenario, progress: Callable[[str], None] | None) -> t
     if candidate is None:
         raise LiftoptError(f"no verified solution to differentiate: {solution.status}")
     sharp = min(SHARP, scenario.solver.tolerance)
-    polished = replanner.replan(with_overrides(scenario, [f"solver.tolerance={sharp!r}"]))
+    polished = replanner.replan(scenario.replace({"solver.tolerance": sharp}))
     return (candidate if polished is None or not polished.solved else polished), cache
 
 

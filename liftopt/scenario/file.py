@@ -19,7 +19,7 @@ def shipped_scenarios() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
 
 
-def read_scenario_file(source: str | Path) -> tuple[Path, dict[str, Any]]:
+def read_tables(source: str | Path) -> tuple[Path, dict[str, Any]]:
     """Return which file a scenario stands in, and its tables.
 
     Args:

@@ -10,12 +10,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.scenario.model import scenario_to_dict
+from liftopt.scenario.agents import Person
 from liftopt.solution.interpolation import between_knots
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[st
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
         "files": [] if out is None else [str(out / name) for name in files],
-        "scenario": scenario_to_dict(solution.scenario),
+        "scenario": solution.scenario.to_dict(),
         "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
@@ -153,7 +153,7 @@ def joint_meaning(kind: str, robot_model: str, joint: str) -> str:
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
-    share = limit_share(agent)
+    share, who = limit_share(agent), solution.scenario.agents[agent.name]
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
@@ -162,7 +162,7 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
         rows.append(
             {
                 "joint": joint,
-                "meaning": joint_meaning(agent.kind, solution.scenario.robot.model, joint),
+                "meaning": joint_meaning(agent.kind, getattr(who, "model", ""), joint),
                 "peak_torque_Nm": _number(tau[at, column]),
                 "peak_torque_at_s": _number(solution.time[at]),
                 "share_of_limit": _number(share[at, column]),
@@ -205,7 +205,7 @@ def _ground_reactions(solution: Solution) -> dict[str, Any]:
 def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, Any]:
     force, moment = person.ground_force, person.ground_moment
     vertical = _peak(force[:, 2], solution.time, "N")
-    weight = solution.scenario.human.mass * GRAVITY
+    weight = cast(Person, solution.scenario.agents[person.name]).mass * GRAVITY
     return {
         "vertical": vertical,
         "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,

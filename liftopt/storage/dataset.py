@@ -16,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.task import OBJECT_COORDINATES
-from liftopt.scenario.model import scenario_to_toml
 from liftopt.solution.solution import Solution
 from liftopt.storage.record import record
 from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
@@ -168,7 +167,7 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "versions": json.dumps(versions),
         "assessment": json.dumps(solution.assessment.plain(), allow_nan=False),
         "record": json.dumps(record(solution), allow_nan=False),
-        SCENARIO_TEXT: scenario_to_toml(solution.scenario),
+        SCENARIO_TEXT: solution.scenario.to_toml(),
     }
     attributes |= {f"{URDF_TEXT}{name}": text for name, text in solution.urdfs.items()}
     attributes |= {f"objective_{name}": value for name, value in solution.objective_terms.items()}

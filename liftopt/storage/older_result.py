@@ -7,12 +7,12 @@ from pathlib import Path
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.bounded_read import read_regular
 from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.storage.result_folder import MODELS, SCENARIO
 from liftopt.storage.urdf_check import LARGEST_URDF
 
 # While a result replaced another one, that stood here; what lies around it was a mix.
 KEPT = ".older-result"
-FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
 
 
 def scenario_beside(folder: Path) -> Scenario:
@@ -32,13 +32,13 @@ def scenario_beside(folder: Path) -> Scenario:
     return load_scenario(folder / SCENARIO)
 
 
-def urdfs_beside(folder: Path) -> dict[str, str]:
+def urdfs_beside(folder: Path, scenario: Scenario) -> dict[str, str]:
     """Return the models beside a solution.nc without them, unchecked, by the names of agents and object.
 
     Raises:
         InputError: one is missing or cannot be read.
     """
-    return {name: _text(folder / MODELS / file) for name, file in FILES.items()}
+    return {name: _text(folder / MODELS / file) for name, file in urdf_files(scenario).items()}
 
 
 def _text(path: Path) -> str:

@@ -56,7 +56,7 @@ def load_result(path: str | Path) -> Solution:
         raise no_result(path) from None
     scenario = scenario_of(file, attributes)
     built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario), object_of(scenario))
-    urdfs = _urdfs(file, attributes, [each.name for each in built])
+    urdfs = _urdfs(file, attributes, scenario)
     try:
         agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
         _check_models(file, built, (*agents, held))
@@ -66,12 +66,14 @@ def load_result(path: str | Path) -> Solution:
         raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
 
 
-def _urdfs(file: Path, attributes: Mapping[str, Any], names: list[str]) -> dict[str, str]:
+def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dict[str, str]:
     """Return the models of a result, of which each was looked through; raises InputError."""
     if SCENARIO_TEXT in attributes:
-        urdfs = {name: str(attributes.get(f"{URDF_TEXT}{name}", "")) for name in names}
+        urdfs = {
+            name: str(attributes.get(f"{URDF_TEXT}{name}", "")) for name in (*scenario.agents, scenario.object.name)
+        }
     else:
-        urdfs = urdfs_beside(file.parent)
+        urdfs = urdfs_beside(file.parent, scenario)
     for name, text in urdfs.items():
         try:
             check_urdf(text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,24 +10,25 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.suggestions import MOST, did_you_mean, nearest
 from liftopt.files.toml_text import toml
 from liftopt.scenario.file import LARGEST_FILE, no_scenario, shipped_scenarios
-from liftopt.scenario.model import Scenario, load_scenario, scenario_from_dict, with_overrides
+from liftopt.scenario.keys import Changes, changes_in
+from liftopt.scenario.model import Scenario, load_scenario, scenario_from_dict
 from liftopt.storage.older_result import scenario_beside
 from liftopt.storage.result_folder import NETCDF, SCENARIO_TEXT, results_in
 
 
-def scenario_or_solved(source: str | Path | None = None, overrides: Iterable[str] = ()) -> Scenario:
+def scenario_or_solved(source: str | Path | None = None, changes: Changes = ()) -> Scenario:
     """Return the scenario of a TOML file, or the one that a result was solved for.
 
     Args:
         source: path of the file, the name of a shipped scenario (a str), or a result folder or its solution.nc; None is
             ``"table5"``.
-        overrides: entries that differ, as ``load_scenario`` takes them.
+        changes: entries that differ, as ``load_scenario`` takes them.
 
     Raises:
         InputError: what ``source`` names cannot be read, or does not describe a scenario.
     """
     if source is None or source in shipped_scenarios():
-        return load_scenario(source, overrides)
+        return load_scenario(source, changes)
     path = Path(source)
     try:
         of_result, there = path.name == NETCDF or path.is_dir(), path.exists() or path.is_symlink()
@@ -36,7 +37,7 @@ def scenario_or_solved(source: str | Path | None = None, overrides: Iterable[str
     if not of_result:
         if not there:
             raise no_scenario(path, _results_like(path))
-        return load_scenario(path, overrides)
+        return load_scenario(path, changes)
     from liftopt.storage.netcdf_file import read_netcdf  # brings numpy, which bad input need not wait for
 
     file = path if path.name == NETCDF else path / NETCDF
@@ -46,7 +47,7 @@ def scenario_or_solved(source: str | Path | None = None, overrides: Iterable[str
         offer = did_you_mean([str(entry) for entry in results_in(file.parent)][:MOST])
         why = f"is not a file, nor a result folder with a {NETCDF}{offer}"
         raise InputError(str(source), NO_VALUE, why) from None
-    return with_overrides(scenario_of(file, attributes), overrides)
+    return scenario_of(file, attributes).replace(dict(changes_in(changes)))
 
 
 def scenario_of(file: Path, attributes: Mapping[str, Any]) -> Scenario:

@@ -11,12 +11,11 @@ import numpy as np
 
 from liftopt.errors import InputError
 from liftopt.files.checksum import sealed
-from liftopt.scenario.model import scenario_to_toml
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 from liftopt.storage.dataset import NamedArrays, label_attributes, named_arrays
 from liftopt.storage.netcdf_file import read_netcdf
 from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, UNSOLVED, locked, replace_result
-from liftopt.storage.urdf_files import urdf_files
 
 
 def save(solution: Solution, out: Path) -> Path:
@@ -31,7 +30,7 @@ def save(solution: Solution, out: Path) -> Path:
         InputError: the folder or a file cannot be written.
     """
     content = sealed(netcdf_bytes(named_arrays(solution)))
-    beside = {SCENARIO: scenario_to_toml(solution.scenario).encode()}
+    beside = {SCENARIO: solution.scenario.to_toml().encode()}
     beside |= {
         f"{MODELS}/{file}": solution.urdfs[name].encode() for name, file in urdf_files(solution.scenario).items()
     }

@@ -21,7 +21,7 @@ import h5py
 import numpy as np
 import pytest
 
-from liftopt.scenario.model import load_scenario, scenario_to_toml
+from liftopt.scenario.model import load_scenario
 
 MODEL = "urdf_robot"
 NUMBERS = ["nan", "inf", "-inf", "1e999", "-1", "0", "1e308", "9" * 400, "0x" + "f" * 400, "1979-05-27", "true", '"1"']
@@ -65,7 +65,7 @@ def _wrong_entry(lines: list[str], rng: random.Random) -> str:
 
 
 def test_a_hundred_malformed_scenarios_are_refused(refused: Callable[[list[str]], str], tmp_path: Path) -> None:
-    rng, text, path = random.Random(1), scenario_to_toml(load_scenario("table5")), tmp_path / "scenario.toml"
+    rng, text, path = random.Random(1), load_scenario("table5").to_toml(), tmp_path / "scenario.toml"
     count = readable = 0
     while count < 100:
         by_entry = rng.random() < 0.7

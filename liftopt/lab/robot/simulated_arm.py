@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.mujoco_model import import_mujoco, spec_of
-from liftopt.multibody.robots.sawyer import GRASP, MOVING, NAME, VIRTUAL
+from liftopt.multibody.robots.sawyer import MOVING, NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name
 from liftopt.solution.solution import Solution
 
@@ -67,7 +67,7 @@ class SimulatedArm:
         self._model = spec.compile()
         self._model.dof_damping[:], self._model.dof_frictionloss[:] = VISCOUS * friction, FRICTION * friction
         self._data = self._mujoco.MjData(self._model)
-        self._tip = self._model.body(GRASP).id
+        self._tip = self._model.body(f"{NAME}_grasp").id
         self._stiff = float(stiff)
         self.torque = np.zeros(7)
         self.reference = np.zeros(7)
