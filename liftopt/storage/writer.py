@@ -9,13 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from liftopt.errors import InputError
+from liftopt.errors import InputError, LiftoptError
 from liftopt.files.checksum import sealed
 from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 from liftopt.storage.dataset import NamedArrays, label_attributes, named_arrays
 from liftopt.storage.netcdf_file import read_netcdf
 from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, UNSOLVED, locked, replace_result
+from liftopt.storage.solved_scenario import scenario_of
 
 
 def save(solution: Solution, out: Path) -> Path:
@@ -38,17 +39,37 @@ def save(solution: Solution, out: Path) -> Path:
         out.mkdir(parents=True, exist_ok=True)
         with locked(out):
             if solution.solved or not holds_more_than_an_iterate(out):
-                replace_result(out, content, beside)
+                _put(out, content, beside)
                 return out
             aside = out / UNSOLVED
             if aside.is_symlink():
                 raise OSError(errno.ENOTDIR, f"{aside} is a link, and what is written there would be elsewhere")
             aside.mkdir(exist_ok=True)
             with locked(aside):
-                replace_result(aside, content, beside)
+                _put(aside, content, beside)
             return aside
     except OSError as error:
         raise InputError("--out", str(out), f"cannot be written: {error.strerror or error}") from error
+
+
+def _put(folder: Path, content: bytes, beside: dict[str, bytes]) -> None:
+    """Write a result, and remove the models of the one before it that this one does not have."""
+    left_over = _models_of(folder) - set(beside)
+    replace_result(folder, content, beside)
+    for name in left_over:
+        (folder / name).unlink(missing_ok=True)
+
+
+def _models_of(folder: Path) -> set[str]:
+    """Return the models beside the result in a folder, by their paths within it; none if there is no result."""
+    file = folder / NETCDF
+    if not os.path.lexists(file):
+        return set()
+    try:
+        scenario = scenario_of(file, read_netcdf(file).attributes)
+    except (LiftoptError, OSError):
+        return set()
+    return {f"{MODELS}/{name}" for name in urdf_files(scenario).values()}
 
 
 def files_of(solution: Solution) -> tuple[str, ...]:
