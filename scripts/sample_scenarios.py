@@ -20,7 +20,7 @@ from scipy.stats import qmc
 from liftopt.errors import InputError, LiftoptError
 from liftopt.scenario.model import load_scenario, with_overrides
 from liftopt.search.cache import SolverCache
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 
 RANGES = {
     "human.stature": (1.45, 2.05),
@@ -61,7 +61,7 @@ def answer(overrides: list[str], cache: SolverCache) -> dict[str, Any]:
     began, cpu = time.monotonic(), time.process_time()
     entry: dict[str, Any] = {"overrides": overrides}
     try:
-        solution = lift(with_overrides(load_scenario("table5"), overrides), cache=cache)
+        solution = solve(with_overrides(load_scenario("table5"), overrides), cache=cache)
         entry |= {"outcome": "solved" if solution.solved else solution.status.partition(":")[0].partition(" (")[0]}
         entry |= {"status": solution.status, "objective": solution.objective}
         entry |= {"starts": [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]}

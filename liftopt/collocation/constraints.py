@@ -28,7 +28,7 @@ class Block:
     """Rows of one constraint of one agent or the object.
 
     Attributes:
-        name: ``"closure"`` (6), ``"torque"`` (2), ``"keep_in"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
+        name: ``"closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
             ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``.
         who: agent or object.
         rows: where in g.
@@ -157,7 +157,7 @@ def _workspace(rows: _Rows, i: int, agent: Agent) -> None:
     for axis in np.flatnonzero(agent.workspace.normal):
         rows.add(rows.outputs_at(i, rows.knots, np.array([n + axis])), float(agent.workspace.normal[axis]))
     offset, above = np.array([agent.workspace.offset]), np.array([np.inf])
-    rows.close("keep_in", agent.name, ("distance",), offset, above, len(rows.knots))
+    rows.close("workspace", agent.name, ("distance",), offset, above, len(rows.knots))
 
 
 def _grasp_force(rows: _Rows, i: int, who: str, cap: float) -> None:

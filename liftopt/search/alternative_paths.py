@@ -14,6 +14,7 @@ import numpy.typing as npt
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.transfer import nearest_controls
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import CLOSING_ITERATIONS, FOLLOWING_ITERATIONS, InverseKinematics
@@ -30,7 +31,7 @@ SAME = 0.06
 
 
 def other_ways(
-    problem: Problem, kinematics: InverseKinematics, x: Array, rng: np.random.Generator, deadline: float
+    problem: Problem, kinematics: InverseKinematics, x: Array, rng: np.random.Generator, deadline: Deadline
 ) -> list[InitialGuess]:
     """Return a motion with one agent on another way, for a few ways of each, the agents taking turns.
 
@@ -39,7 +40,7 @@ def other_ways(
         kinematics: of its team.
         x: the motion (n_x,).
         rng: where the postures come from.
-        deadline: ``time.monotonic`` value past which inverse kinematics stops.
+        deadline: past which inverse kinematics stops.
     """
     layout, agents = problem.layout, problem.team.agents
     here = np.einsum("kc,cn->kn", problem.mesh.basis[0], x[layout.control])
@@ -69,7 +70,7 @@ def _followed(
     here: Array,
     at: npt.NDArray[np.int64],
     rng: np.random.Generator,
-    deadline: float,
+    deadline: Deadline,
 ) -> Array:
     """Return coordinates (K, B, n) along the object's path in ``here`` (K, n), from scattered postures at knots ``at``.
 

@@ -17,6 +17,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.search.postures import PostureSolver
 
 T = TypeVar("T")
+BANDED, IPOPT = "banded", "ipopt"  # solvers by name
 # Of the objective inside IPOPT: from twelve starts of a lift 26 iterations in the median, with 0.1 they were 30.
 LIFT_SCALING = 0.03
 
@@ -77,7 +78,7 @@ class SolverCache:
         kept = self._solvers.get(key)
         if kept is None or not problem.interchangeable(kept[0]):
             made: Solver
-            if name == "banded":
+            if name == BANDED:
                 made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), progress)
             else:
                 options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)

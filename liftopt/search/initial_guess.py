@@ -8,7 +8,6 @@ taking turns. What they lead to tells which moves to combine (``recombined``).
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -16,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.search.moves import Move, blend_all, combinations, find_moves
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
@@ -87,7 +87,7 @@ def initial_guesses(
     problem: Problem,
     most: int,
     seed: int,
-    deadline: float,
+    deadline: Deadline,
     progress: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     seeds: int = 0,
@@ -99,21 +99,17 @@ def initial_guesses(
         problem: the lift.
         most: moves of one agent.
         seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
-        deadline: ``time.monotonic`` value past which the search stops.
+        deadline: past which the search stops.
         progress: hears of progress.
         postures: solver for the problem's team, to be used again; None: one is made.
         seeds: postures that are searched from, at least; fewer than moves or ``SEEDS`` are not.
         rounds: of seeds, after which an end without a posture is given up.
     """
     task, rng = problem.task, np.random.default_rng(seed)
-    if postures is None:
-        # Its kernels may have to be compiled, once: that is no part of the search.
-        began = time.monotonic()
-        postures = PostureSolver(problem.team, task, progress)
-        deadline += time.monotonic() - began
+    postures = postures or PostureSolver(problem.team, task, progress)
     count = max(SEEDS, most, seeds)
     for attempt in range(rounds):
-        if time.monotonic() > deadline:
+        if deadline.passed:
             break
         if progress:
             progress(f"postures at both ends, from {count} seeds" + (" more" if attempt else ""))
@@ -128,7 +124,7 @@ def posture_starts(
     problem: Problem,
     count: int,
     seed: int,
-    deadline: float,
+    deadline: Deadline,
     progress: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     rounds: int = ROUNDS,
@@ -139,7 +135,7 @@ def posture_starts(
 
 
 def _ends(
-    postures: PostureSolver, problem: Problem, seeds: list[Array], deadline: float
+    postures: PostureSolver, problem: Problem, seeds: list[Array], deadline: Deadline
 ) -> tuple[list[Posture], list[Posture]]:
     """Return postures at the start, also those that lead back from the end, and at the end."""
     task = problem.task

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.parallel_map import parallel_map
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.search.initial_guess import InitialGuess, recombined, turned
@@ -15,7 +16,7 @@ from liftopt.search.postures import rounded
 def solve_all(
     solvers: Sequence[Solver],
     starts: Sequence[InitialGuess],
-    deadline: float,
+    deadline: Deadline,
     problem: Problem | None = None,
     margin: float = 1.0,
     most: int | None = None,
@@ -29,7 +30,7 @@ def solve_all(
     Args:
         solvers: one for each thread; with several they must let go of Python's lock at work.
         starts: where to start.
-        deadline: ``time.monotonic`` value past which solvers stop.
+        deadline: past which solvers stop.
         problem: what is solved; None: what each solver was built for.
         margin: how many times the rival's objective is still of interest.
         most: iterations of each; None: as many as its solver takes.
@@ -48,7 +49,7 @@ def solve_all(
 def solve_each(
     solvers: Sequence[Solver],
     starts: Sequence[tuple[InitialGuess, SolverResult | None]],
-    deadline: float,
+    deadline: Deadline,
     problem: Problem | None = None,
     most: int | None = None,
 ) -> Iterator[SolverResult]:
@@ -57,7 +58,7 @@ def solve_each(
     Args:
         solvers: one for each thread, as for ``solve_all``.
         starts: where to start, and what is to be beaten.
-        deadline: ``time.monotonic`` value past which solvers stop.
+        deadline: past which solvers stop.
         problem: what is solved; None: what each solver was built for.
         most: iterations of each; None: as many as its solver takes.
 
@@ -75,7 +76,11 @@ def solve_each(
 
 
 def follow_up(
-    solver: Solver, starts: Sequence[InitialGuess], results: Sequence[SolverResult], deadline: float, problem: Problem
+    solver: Solver,
+    starts: Sequence[InitialGuess],
+    results: Sequence[SolverResult],
+    deadline: Deadline,
+    problem: Problem,
 ) -> Iterator[tuple[InitialGuess, SolverResult]]:
     """Solve from the starts that come of others' results, and yield each with its result.
 
@@ -86,7 +91,7 @@ def follow_up(
         solver: for the problem.
         starts: what was solved from.
         results: where each of them led.
-        deadline: ``time.monotonic`` value past which solvers stop.
+        deadline: past which solvers stop.
         problem: what is solved.
     """
 

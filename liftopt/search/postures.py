@@ -6,7 +6,6 @@ solve is spent on it. The others go to the banded solver, on the equations of th
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -17,6 +16,7 @@ import pinocchio as pin
 from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.parallel_map import parallel_map
 from liftopt.collocation.solvers.result import Solver
@@ -91,11 +91,11 @@ class PostureSolver:
         except SolverError:  # IPOPT's linear solver takes one solve at a time
             self._solvers = self._solvers or [Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))]
 
-    def solve(self, pose: Array, seed: Array, deadline: float) -> Posture | None:
+    def solve(self, pose: Array, seed: Array, deadline: Deadline) -> Posture | None:
         """Return the posture found from ``seed`` (coordinates), or None; NaN in ``pose`` (6,) leaves that free."""
         return next(self.search(pose, [seed], deadline))
 
-    def search(self, pose: Array, seeds: Sequence[Array], deadline: float) -> Iterator[Posture | None]:
+    def search(self, pose: Array, seeds: Sequence[Array], deadline: Deadline) -> Iterator[Posture | None]:
         """Yield what is found from each seed: all are brought to the object at once, and held each by itself."""
         if not seeds:
             return iter(())
@@ -113,9 +113,9 @@ class PostureSolver:
         )
 
 
-def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: float) -> Posture | None:
+def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: Deadline) -> Posture | None:
     """Return the static posture found from coordinates that close on the object; None if there is none in time."""
-    if time.monotonic() > deadline:
+    if deadline.passed:
         return None
     model = problem.team.object.model
     weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))

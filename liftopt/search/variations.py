@@ -8,19 +8,19 @@ better optimum about as often for each iteration of the solver: once in a thousa
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.search.alternative_paths import other_ways
 from liftopt.search.initial_guess import InitialGuess
-from liftopt.search.mesh_refinement import same_optimum
 from liftopt.search.mirrored_joints import mirrored
 from liftopt.search.multistart import solve_each
+from liftopt.search.optima import same_optimum
 from liftopt.search.postures import PostureSolver, rounded
 from liftopt.search.via_postures import detours, rests
 
@@ -54,7 +54,7 @@ def vary(
     optima: Sequence[SolverResult],
     idle: float,
     seed: int,
-    deadline: float,
+    deadline: Deadline,
     most: float = np.inf,
 ) -> Iterator[tuple[InitialGuess, SolverResult]]:
     """Solve from variations of optima and of what comes of them; yield each with its result.
@@ -66,7 +66,7 @@ def vary(
         optima: what is varied, at least one.
         idle: variations without a gain after which it ends.
         seed: of what is random.
-        deadline: ``time.monotonic`` value past which no more is tried.
+        deadline: past which no more is tried.
         most: variations after which it ends in any case; the turn that is begun is ended.
     """
     if not idle:
@@ -84,7 +84,7 @@ def vary(
         return _Varied(result, _in_turns(kinds))
 
     known, best, since, solved = [varied(optimum) for optimum in optima], min(optima, key=_objective), 0, 0
-    while since < idle and solved < most and time.monotonic() < deadline:
+    while since < idle and solved < most and not deadline.passed:
         highest = NEAR * best.objective
         ready = [entry for entry in known if entry.result.objective <= highest and not entry.exhausted]
         if not ready:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.transfer import nearest_controls
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import FOLLOWING_ITERATIONS, InverseKinematics
@@ -27,14 +28,14 @@ THERE = 0.4
 TOO_HIGH = 16.0
 
 
-def rests(problem: Problem, postures: PostureSolver, rng: np.random.Generator, deadline: float) -> list[Posture]:
+def rests(problem: Problem, postures: PostureSolver, rng: np.random.Generator, deadline: Deadline) -> list[Posture]:
     """Return postures that hold the object anywhere within the task's limits, what costs least first.
 
     Args:
         problem: the lift.
         postures: finds them.
         rng: of the seeds.
-        deadline: ``time.monotonic`` value past which no more is tried.
+        deadline: past which no more is tried.
     """
     anywhere = np.full(OBJECT_SIZE, np.nan)
     seeds = [seed_coordinates(problem, anywhere, rng if n else None) for n in range(SEEDS)]
@@ -49,7 +50,7 @@ def rests(problem: Problem, postures: PostureSolver, rng: np.random.Generator, d
 
 
 def detours(
-    problem: Problem, kinematics: InverseKinematics, x: Array, by: list[Posture], deadline: float
+    problem: Problem, kinematics: InverseKinematics, x: Array, by: list[Posture], deadline: Deadline
 ) -> list[InitialGuess]:
     """Return a motion changed so that one agent takes the object by way of a posture of its own and the others follow.
 
@@ -58,7 +59,7 @@ def detours(
         kinematics: of its team.
         x: the motion (n_x,).
         by: the postures; the way by each of them for each agent, those of the first posture first.
-        deadline: ``time.monotonic`` value past which inverse kinematics stops.
+        deadline: past which inverse kinematics stops.
     """
     if not by:
         return []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -11,14 +10,16 @@ from benchmarks.case import PATIENCE, Case, Timing, measure, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import Varied, table5, varied_scenarios
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import FEWEST
 from liftopt.control.replanning import Replanner
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.model import Scenario, with_overrides
 from liftopt.search.cache import SolverCache
-from liftopt.search.candidate import Plan
-from liftopt.search.mesh_refinement import meshes_below, neighbour
+from liftopt.search.candidate import Candidate
+from liftopt.search.mesh_refinement import meshes_below
+from liftopt.search.optimum_on_mesh import optimum_on_mesh
 
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
 MIXES, MIXES_SEED = 100, 3
@@ -134,7 +135,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     return Row(ratio, note, {"iterations": counted}, details)
 
 
-def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Plan | None]:
+def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Candidate | None]:
     """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before.
 
     Returns:
@@ -144,11 +145,11 @@ def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Pla
     case, cache = Case.of(varied.scenario(), varied.ends, coarsest), SolverCache()
     solver = case.solver("banded")
 
-    def solve() -> Plan | None:
+    def solve() -> Candidate | None:
         result = case.solve(solver)
-        plan = Plan(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
+        plan = Candidate(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
         for n in finer:
-            plan = plan and neighbour(cache, plan, n, ("banded",), time.monotonic() + PATIENCE, print)
+            plan = plan and optimum_on_mesh(cache, plan, n, ("banded",), Deadline.after(PATIENCE), print)
         return plan
 
     return repeat(repeats, solve)

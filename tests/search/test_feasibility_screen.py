@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -12,11 +11,12 @@ import pytest
 
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.multibody.agent import HalfSpace
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
 from liftopt.scenario.model import load_scenario
-from liftopt.search.feasibility_screen import screen, too_fast
-from liftopt.solution.infeasibility_report import Obstacle
+from liftopt.search.feasibility_screen import screen_ends, too_fast
+from liftopt.solution.infeasibility_report import InfeasibilityReason
 
 N = 20
 
@@ -26,13 +26,13 @@ def _problem(*overrides: str) -> Problem:
     return Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), motions_of(scenario, N).mesh())
 
 
-def _obstacles(*overrides: str) -> list[Obstacle]:
-    return screen(_problem(*overrides), 0, np.inf)[0]
+def _obstacles(*overrides: str) -> list[InfeasibilityReason]:
+    return screen_ends(_problem(*overrides), 0, NEVER)[0]
 
 
 def test_nothing_is_in_the_way_of_the_default_lift_and_the_postures_hold_it() -> None:
     problem = _problem()
-    obstacles, postures = screen(problem, 0, np.inf)
+    obstacles, postures = screen_ends(problem, 0, NEVER)
     assert obstacles == []
     for posture, pose in zip(postures, (problem.task.start, problem.task.end), strict=True):
         z = posture.coordinates[-6:]
@@ -97,7 +97,7 @@ def test_a_joint_that_cannot_bend_enough_is_named() -> None:
     q_lower, q_upper = human.limits.q_lower.copy(), human.limits.q_upper.copy()
     q_lower[:3], q_upper[:3], q_lower[6], q_upper[6] = -0.01, 0.01, -0.01, 0.0
     stiff = replace(human, limits=replace(human.limits, q_lower=q_lower, q_upper=q_upper))
-    obstacles, _ = screen(replace(problem, team=replace(problem.team, agents=(stiff, robot))), 0, np.inf)
+    obstacles, _ = screen_ends(replace(problem, team=replace(problem.team, agents=(stiff, robot))), 0, NEVER)
     assert obstacles
     for obstacle in obstacles:
         assert obstacle.constraint == "closure" and obstacle.amount > 1e-3
@@ -110,8 +110,8 @@ def test_a_half_space_that_keeps_the_hand_away_is_named() -> None:
     problem = _problem()
     human, robot = problem.team.agents
     walled = replace(human, workspace=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.55))
-    obstacles, _ = screen(replace(problem, team=replace(problem.team, agents=(walled, robot))), 0, np.inf)
-    assert [(o.constraint, o.who, o.unit) for o in obstacles] == [("keep_in", "human", "m")] * 2
+    obstacles, _ = screen_ends(replace(problem, team=replace(problem.team, agents=(walled, robot))), 0, NEVER)
+    assert [(o.constraint, o.who, o.unit) for o in obstacles] == [("workspace", "human", "m")] * 2
     for obstacle in obstacles:
         assert obstacle.amount == pytest.approx(0.15, abs=1e-4)
         assert "the human's grasp would lie 0.150 m outside its half-space" in obstacle.message
@@ -146,6 +146,6 @@ def test_a_passed_deadline_ends_the_search_at_once_and_makes_nothing_up(monkeypa
         raise AssertionError("an iteration after the deadline")
 
     monkeypatch.setattr(Batch, "slopes", asked)
-    obstacles, postures = screen(_problem(), 0, time.monotonic())
+    obstacles, postures = screen_ends(_problem(), 0, Deadline.after(0.0))
     assert obstacles == []
     assert len(postures) == 2

@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.multistart import solve_all
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 
 
 @dataclass
@@ -22,7 +23,7 @@ class Slow:
     """A solver that takes a while and returns its start."""
 
     busy: threading.Lock = field(default_factory=threading.Lock)
-    given: list[tuple[float, int | None]] = field(default_factory=list)
+    given: list[tuple[Deadline, int | None]] = field(default_factory=list)
     rivals: dict[float, SolverResult | None] = field(default_factory=dict)
     converges: bool = True
 
@@ -30,7 +31,7 @@ class Slow:
         self,
         x0: np.ndarray,
         *,
-        deadline: float,
+        deadline: Deadline,
         warm: object = None,
         problem: object = None,
         incumbent: SolverResult | None = None,
@@ -49,7 +50,7 @@ class Slow:
 def test_results_come_in_the_order_of_the_starts(workers: int) -> None:
     starts = [InitialGuess(f"start {i}", np.array([wait])) for i, wait in enumerate((0.03, 0.0, 0.02, 0.0, 0.01, 0.0))]
     solvers = [Slow() for _ in range(workers)]
-    results = list(solve_all(solvers, starts, np.inf))
+    results = list(solve_all(solvers, starts, NEVER))
     assert [result.objective for result in results] == [float(start.x[0]) for start in starts]
     assert all(solver.given for solver in solvers)
 
@@ -61,7 +62,7 @@ def test_the_first_optimum_is_the_rival_of_all_that_join_moves(workers: int) -> 
     starts.append(InitialGuess("naive", np.array([0.01])))
     for converges in (True, False):
         solvers = [Slow(converges=converges) for _ in range(workers)]
-        list(solve_all(solvers, starts, np.inf))
+        list(solve_all(solvers, starts, NEVER))
         given = {x: r for solver in solvers for x, r in solver.rivals.items()}
         assert given[0.03] is given[0.01] is None
         assert all((r.objective, r.converged) == (0.03, converges) for r in (given[0.0], given[0.02]) if r)
@@ -70,7 +71,7 @@ def test_the_first_optimum_is_the_rival_of_all_that_join_moves(workers: int) -> 
 
 def test_each_start_gets_its_share_in_iterations_and_all_the_time() -> None:
     """A share of the time that is left would make what is found depend on how busy the machine is."""
-    solver, late = Slow(), np.inf
+    solver, late = Slow(), Deadline.after(3600.0)
     list(solve_all([solver], [InitialGuess("a", np.zeros(1)), InitialGuess("b", np.zeros(1))], late, most=7))
     assert solver.given == [(late, 7)] * 2
 
@@ -79,14 +80,14 @@ def test_each_start_gets_its_share_in_iterations_and_all_the_time() -> None:
 def test_workers_and_a_kept_workshop_change_nothing(tries: int) -> None:
     """Bit by bit: one worker, two workers, and a second time with what was kept; some starts are given up."""
     overrides = ["solver.name=banded", "solver.starts=6", "solver.intervals=16", f"solver.tries={tries}"]
-    one = lift(load_scenario("table5", [*overrides, "solver.workers=1"]))
+    one = solve(load_scenario("table5", [*overrides, "solver.workers=1"]))
     both, cache = load_scenario("table5", overrides), SolverCache()
     assert one.solved
     given_up = "given up: nothing better than another start in sight"
     statuses = {start.status for start in one.starts}
     assert {"converged"} <= statuses <= {"converged", given_up}
     assert tries or given_up in statuses
-    for other in (lift(both, cache=cache), lift(both, cache=cache)):
+    for other in (solve(both, cache=cache), solve(both, cache=cache)):
         assert other.objective == one.objective
         assert [(s.name, s.objective) for s in other.starts] == [(s.name, s.objective) for s in one.starts]
         for ours, theirs in zip(one.agents, other.agents, strict=True):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.search import variations
 from liftopt.search.initial_guess import InitialGuess
@@ -50,7 +50,7 @@ def tenfold(monkeypatch: pytest.MonkeyPatch) -> int:
     return count
 
 
-def _vary(solver: Any, optima: list[SolverResult], idle: float, deadline: float = 1e12) -> list[float]:
+def _vary(solver: Any, optima: list[SolverResult], idle: float, deadline: Deadline = NEVER) -> list[float]:
     nothing: Any = SimpleNamespace(kinematics=None)
     tried = list(vary([solver], nothing, nothing, optima, idle, 0, deadline))
     assert [float(start.x[0]) for start, _ in tried] == [value for value, _ in solver.asked]
@@ -81,7 +81,7 @@ def test_it_ends_after_so_many_without_a_gain_and_at_once_without_time_or_patien
     # A gain of less than a thousandth is none.
     small = Table({10.0: 9.995})
     assert len(_vary(small, [_result(float(n), 10.0) for n in range(1, 9)], 2 * TURN)) == 2 * TURN
-    assert _vary(Table({}), [_result(1.0, 10.0)], 2 * TURN, time.monotonic() - 1.0) == []
+    assert _vary(Table({}), [_result(1.0, 10.0)], 2 * TURN, Deadline.after(-1.0)) == []
     assert _vary(Table({}), [_result(1.0, 10.0)], 0) == []
 
 

@@ -15,7 +15,6 @@ not converge, IPOPT with SPRAL 47 ms an iteration, and one quadratic programme b
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +24,7 @@ import numpy.typing as npt
 from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, kernels_for_simd
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import PRUNED, STOPPED, Multipliers, SolverResult
 from liftopt.errors import SolverError
 
@@ -104,7 +104,7 @@ class Banded:
         self,
         x0: Array,
         *,
-        deadline: float,
+        deadline: Deadline,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         incumbent: SolverResult | None = None,
@@ -146,7 +146,7 @@ class Banded:
         """Return how many iterations a start gets that has a rival."""
         return max(PATIENCE, PATIENCE_SHARE * incumbent.iterations) if incumbent.converged else LONGER
 
-    def _run(self, x0: Array, problem: Problem, deadline: float, arguments: dict[str, Any]) -> dict[str, Any]:
+    def _run(self, x0: Array, problem: Problem, deadline: Deadline, arguments: dict[str, Any]) -> dict[str, Any]:
         lower, upper = problem.bounds()
         constraints, options = problem.constraints, self.options
         found: dict[str, Any] = self._solver.solve(
@@ -158,7 +158,7 @@ class Banded:
             tolerance=SAFETY * options.tolerance,
             rough=options.rough,
             objective_scaling=options.objective_scaling,
-            seconds=deadline - time.monotonic(),
+            seconds=deadline.left,
             **arguments,
         )
         return found

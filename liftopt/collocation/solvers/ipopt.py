@@ -18,6 +18,7 @@ import numpy.typing as npt
 from liftopt.collocation.assembly import Nlp
 from liftopt.collocation.codegen.simd_kernels import SimdKernel
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.solvers.simd_nlp import wide_nlp
 from liftopt.errors import SolverError
@@ -77,7 +78,7 @@ class Ipopt:
         self,
         x0: Array,
         *,
-        deadline: float,
+        deadline: Deadline,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         incumbent: SolverResult | None = None,
@@ -106,14 +107,14 @@ class Ipopt:
             evaluation_seconds=first.evaluation_seconds + second.evaluation_seconds,
         )
 
-    def _run(self, x0: Array, deadline: float, warm: Multipliers | None, problem: Problem) -> SolverResult:
+    def _run(self, x0: Array, deadline: Deadline, warm: Multipliers | None, problem: Problem) -> SolverResult:
         solver, constraints = self._solver(warm is not None), problem.constraints
         lower, upper = problem.bounds()
         arguments = dict(x0=x0, p=problem.parameters, lbx=lower, ubx=upper)
         arguments |= dict(lbg=constraints.lower, ubg=constraints.upper)
         if warm is not None:
             arguments |= dict(lam_x0=warm.x, lam_g0=warm.g)
-        self._stop.at, self._stop.iterations = deadline, 0
+        self._stop.deadline, self._stop.interrupted, self._stop.iterations = deadline, False, 0
         began = time.perf_counter()
         try:
             with _interruptible(self._stop):
@@ -206,7 +207,7 @@ def _interruptible(stop: _Stop) -> Iterator[None]:
 
     def note(*_: object) -> None:
         interrupted.append(True)
-        stop.at = -float("inf")
+        stop.interrupted = True
 
     signal.signal(signal.SIGINT, note)
     try:
@@ -222,7 +223,7 @@ class _Stop(ca.Callback):
 
     def __init__(self, n_x: int, n_g: int, n_p: int) -> None:
         ca.Callback.__init__(self)
-        self.at = float("inf")
+        self.deadline, self.interrupted = NEVER, False
         self.most: int | None = None
         self.iterations = 0
         self._sizes = {"x": n_x, "f": 1, "g": n_g, "lam_x": n_x, "lam_g": n_g, "lam_p": n_p}
@@ -253,5 +254,5 @@ class _Stop(ca.Callback):
 
     def eval_buffer(self, _: Any, results: Any) -> int:
         self.iterations += 1  # the first call is at the start
-        np.frombuffer(results[0])[0] = self.exhausted or time.monotonic() > self.at
+        np.frombuffer(results[0])[0] = self.exhausted or self.interrupted or self.deadline.passed
         return 0
