@@ -66,7 +66,7 @@ def answer(overrides: list[str], cache: SolverCache) -> dict[str, Any]:
         entry |= {"status": solution.status, "objective": solution.objective}
         entry |= {"starts": [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]}
         entry |= {"notes": solution.notes, "kept": solution.kept_start, "intervals": solution.intervals}
-        for name in ("reasons", "remedies"):
+        for name in ("reasons", "suggested_changes"):
             entry[name] = [item.message for item in getattr(solution, name)]
     except InputError as error:
         entry |= {"outcome": "refused", "status": str(error)}
@@ -86,7 +86,7 @@ def table(entries: list[dict[str, Any]]) -> str:
         lines.append(f"| {outcome} | {count} | {np.median(seconds):.2f} | {np.max(seconds):.2f} |")
     told = [entry for entry in entries if entry["outcome"] not in ("solved", "refused")]
     reasons = sum(bool(entry.get("reasons")) for entry in told)
-    suggested_changes = sum(bool(entry.get("remedies")) for entry in told)
+    suggested_changes = sum(bool(entry.get("suggested_changes")) for entry in told)
     lines.append(f"\n{len(entries)} scenarios; of {len(told)} without a solution {reasons} have named reasons, ")
     lines[-1] += f"{suggested_changes} a change that was solved with."
     return "\n".join(lines)

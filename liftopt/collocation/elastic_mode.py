@@ -22,7 +22,7 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
-from liftopt.collocation.solvers.simd_nlp import wide_nlp
+from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
 
 Array = npt.NDArray[np.float64]
@@ -126,7 +126,7 @@ class SoftProblem(Problem):
     def hard(self) -> Nlp:
         """The functions of the plain problem; callbacks among them must outlive what calls them."""
         kernels = kernels_for_simd(self.plain)
-        return wide_nlp(self.plain, kernels) if kernels else self.plain.nlp
+        return simd_nlp(self.plain, kernels) if kernels else self.plain.nlp
 
     @cached_property
     def nlp(self) -> Nlp:

@@ -43,7 +43,7 @@ class Replanner:
     """
 
     def __init__(self, progress: Progress | None = None, cache: SolverCache | None = None) -> None:
-        """Start without a plan.
+        """Start without one.
 
         Args:
             progress: hears one line at a time of what is going on.

@@ -18,7 +18,7 @@ from liftopt.search.postures import PostureSolver
 
 T = TypeVar("T")
 BANDED, IPOPT = "banded", "ipopt"  # solvers by name
-# Of the objective inside IPOPT: from twelve starts of a lift 26 iterations in the median, with 0.1 they were 30.
+# Of the objective inside IPOPT: with a larger one it takes more iterations (docs/tuning.md).
 LIFT_SCALING = 0.03
 
 
@@ -39,18 +39,18 @@ class SolverCache:
         self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
-        """Return the lift of a scenario on a mesh; ``say`` hears of it when kernels must be compiled first."""
+        """Return the lift of a scenario on a mesh; ``progress`` hears of it when kernels must be compiled first."""
         robot = (scenario.robot, scenario.task.standing_distance)
         agents = (
             self._kept("human", scenario.human, lambda: human_of(scenario)),
             self._kept("robot", robot, lambda: robot_of(scenario)),
         )
-        held = self._kept("table", scenario.table, lambda: object_of(scenario))
+        lifted = self._kept("table", scenario.table, lambda: object_of(scenario))
         team = self._team
         if team is None or any(
-            new is not old for new, old in zip((*agents, held), (*team.agents, team.object), strict=True)
+            new is not old for new, old in zip((*agents, lifted), (*team.agents, team.object), strict=True)
         ):
-            team = self._team = Team.of(agents, held, progress, like=team)
+            team = self._team = Team.of(agents, lifted, progress, like=team)
         if spline not in self._meshes:
             self._meshes[spline] = spline.mesh()
         known = self._problems.get(spline)
@@ -87,7 +87,7 @@ class SolverCache:
         return kept[1]
 
     def postures(self, problem: Problem, scenario: Scenario, progress: Progress | None = None) -> PostureSolver:
-        """Return the solver of static postures for a lift; ``say`` hears of it when kernels must be compiled first."""
+        """Return the solver of static postures for a lift; ``progress`` hears of kernels that are compiled first."""
         workers = scenario.solver.workers
         self._postures = PostureSolver(problem.team, problem.task, progress, like=self._postures, workers=workers)
         return self._postures

@@ -1,9 +1,8 @@
 """Coarse search: many starts on a coarse mesh, of which the best optima are taken to the mesh that was asked for.
 
 The coarse mesh has half as many intervals, or half of that again until they are few (``meshes_below``). A solve costs
-less there, and an optimum of it is a warm start on a finer one. It tells good motions from bad ones: of 24 starts of
-each of 53 widely varied lifts, the four with the best optima on eight intervals led to within 5 % of the best of all 24
-in 50 lifts, the four most promising ones (``moves.py``) in 32.
+less there, its optimum is a warm start on a finer mesh, and it tells good motions from bad ones far better than their
+ranking does (``moves.py``). ``docs/tuning.md`` has the figures behind the constants.
 """
 
 from __future__ import annotations
@@ -29,12 +28,11 @@ from liftopt.search.variations import vary
 # heavy or long lifts the objective falls late.
 MARGIN = 1.2
 # Variations of the optima without a gain, for each try, after which there are no more: so many times the chance that
-# is left to find an optimum that is not known (``_unseen``), at most the second. Of 38 lifts variations lowered the
-# objective by over 1 % in 8 of 11 where that chance was 0.35 or more, in 5 of 27 where it was less; more gained little.
+# is left to find an optimum that is not known (``_unseen``), at most the second. Where it is small they gain little.
 IDLE, MOST_IDLE = 6.0, 2.0
 # Variations in all, for each try: where gain follows gain, more would take longer than all the rest.
 MOST_VARIED = 8
-# Share of the objective that KKT errors may reach here: the iterations that are saved are a fifth.
+# Share of the objective that KKT errors may reach here: optima need only be compared.
 ROUGH = 1e-5
 
 

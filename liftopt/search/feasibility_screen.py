@@ -42,13 +42,13 @@ def too_fast(problem: Problem) -> InfeasibilityReason | None:
     shortest = float(np.nanmax(needed))
     if shortest <= task.duration:
         return None
-    which, held = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.object.name
+    which, lifted = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.object.name
     text = (
-        f"too fast: the {held} would exceed its speed limit along {which}; "
+        f"too fast: the {lifted} would exceed its speed limit along {which}; "
         f"the lift must last at least {shortest:.2f} s, not {task.duration:g} s"
     )
     beyond = shortest / task.duration - 1.0
-    return InfeasibilityReason("velocity", held, shortest - task.duration, "s", text, share=beyond)
+    return InfeasibilityReason("velocity", lifted, shortest - task.duration, "s", text, share=beyond)
 
 
 def screen_ends(
@@ -63,15 +63,15 @@ def screen_ends(
         solver: of static postures of the problem's team, to be used again; None: one is made.
     """
     solver = solver or PostureSolver(problem.team, problem.task)
-    obstacles: list[InfeasibilityReason] = []
+    reasons: list[InfeasibilityReason] = []
     postures: list[Posture] = []
     for name, pose in (("start", problem.task.start), ("end", problem.task.end)):
-        obstacle, posture = _screen_end(problem, solver, name, pose, np.random.default_rng(seed), deadline)
+        reason, posture = _screen_end(problem, solver, name, pose, np.random.default_rng(seed), deadline)
         postures.append(posture)
-        if obstacle is not None:
+        if reason is not None:
             when = 0.0 if name == "start" else problem.task.duration
-            obstacles.append(replace(obstacle, time=when, static=True))
-    return obstacles, postures
+            reasons.append(replace(reason, time=when, static=True))
+    return reasons, postures
 
 
 def _screen_end(
@@ -139,7 +139,7 @@ def _strength(
 ) -> tuple[InfeasibilityReason | None, Posture] | None:
     """Find by bisection how many times stronger agents and grasps must be to hold still there.
 
-    Returns the posture that holds, with an obstacle if that takes more than the limits; None if nothing helps.
+    Returns the posture that holds, with the reason why it is not allowed if it exceeds limits; None if nothing helps.
     """
     if posture := _hold(postures, pose, seeds[:NEAREST], deadline):
         return None, posture

@@ -97,14 +97,14 @@ def infeasible_candidate(
 def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
     """Return a violation as a reason, in words."""
     who, amount, at = violation.who, violation.amount, f"at {violation.time:.2f} s"
-    share, held = f"{100 * violation.share:.0f} %", problem.team.object.name
+    share, lifted = f"{100 * violation.share:.0f} %", problem.team.object.name
     words = {
-        "closure": f"the {who}'s grasp stays {amount:.3f} m off the {held} {at}",
+        "closure": f"the {who}'s grasp stays {amount:.3f} m off the {lifted} {at}",
         "workspace": f"the {who}'s grasp lies {amount:.3f} m outside its half-space {at}",
         "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
         "grasp_force": f"the {who}'s grasp needs {amount:.3g} N ({share}) more than its cap {at}",
         "grasp_moment": f"the {who}'s grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
-        "grasp_turn": f"the {who}'s hand turns {amount:.0f} deg farther on the {held} than it may {at}",
+        "grasp_turn": f"the {who}'s hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",
         "friction": f"flat hand: {who} it slides or lifts, {amount:.3g} N short of its friction {at}",
         "pressure": f"flat hand: {who} it tips or turns, {amount:.3g} Nm beyond its breadth {at}",
         "velocity": f"{who} has to be {amount:.2g} {violation.unit} ({share}) faster than its speed limit {at}",

@@ -2,7 +2,7 @@
 
 Levenberg's and Marquardt's method on the grasp gaps, in its dual form: the steps have the least norm, so a posture
 stays near its seed, and the systems to solve are as small as the number of gaps. Joints at a limit that a step
-would cross are held for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the
+would cross are kept there for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the
 processor has it, and its threads take longer to wake than such small systems to solve.
 """
 
@@ -156,10 +156,10 @@ def _least_norm_step(slopes: Array, left: Array, damping: Array, below: Array, a
     off = np.where((slopes == 0).all(axis=2), 1.0, damping[:, None])
     step = np.zeros_like(below)
     for _ in range(2):
-        held = slopes * free[:, None, :]
-        system = np.einsum("bij,bkj->bik", held, slopes)
+        movable = slopes * free[:, None, :]
+        system = np.einsum("bij,bkj->bik", movable, slopes)
         system[:, range(size), range(size)] += off
-        step = -np.einsum("bij,bi->bj", held, _solved_each(system, left))
+        step = -np.einsum("bij,bi->bj", movable, _solved_each(system, left))
         crossing = (free > 0) & (((below <= 0) & (step < 0)) | ((above <= 0) & (step > 0)))
         if not crossing.any():
             break

@@ -27,10 +27,9 @@ from liftopt.search.optimum_on_mesh import FASTEST_FIRST, optimum_on_mesh
 from liftopt.solution.accuracy import OTHER_MOTION, Accuracy
 
 Progress = Callable[[str], None]
-# Of 16 lifts optima on N = 10, 20 and 40 were up to 0.3 apart in one basin, and in two from 0.6 to 6.
+# Optima of one basin on several meshes are nearer to each other than this, those of others are not (docs/tuning.md).
 SAME_MOTION = 0.4  # [rad, m]
-# A coarser mesh than this tells little of the limit: of 40 lifts on 20 intervals it was 0.6 % off in the median and
-# 2.0 % at most with the mesh of half the intervals, 0.08 % and 0.27 % with that of twice as many.
+# A coarser mesh than this tells little of the limit.
 TELLING = 20
 
 

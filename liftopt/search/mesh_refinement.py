@@ -25,9 +25,8 @@ from liftopt.search.solve_starts import solve_starts
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.verify import CLOSURE_BETWEEN_KNOTS
 
-# A mesh that starts are tried on is halved while so many intervals are left. Of 26 widely varied lifts on 80 intervals
-# the optimum found from 10, 20 and 40 was 1.4, 0.7 and 0.7 % above the best of the three in the geometric mean, in 2.7,
-# 3.5 and 6.1 s.
+# A mesh that starts are tried on is halved while so many intervals are left: a coarser one leads to worse optima, a
+# finer one takes longer (docs/tuning.md).
 COARSE = 20
 # Optima further above the best one than this are not worth a solve on a finer mesh.
 PROMISING = 1.1
@@ -93,9 +92,8 @@ def continue_on_mesh(
 ) -> list[Candidate]:
     """Return the optima that others lead to on so many intervals, each once, the best first.
 
-    Where an optimum of the coarse mesh is two on the finer one, its multipliers lead to that which presses against the
-    same limits. So the solver starts once more from the motion of the best, without them: of 101 widely varied lifts 10
-    gained by it from 10 to 20 intervals, up to 9 %.
+    One optimum of a coarse mesh may be two on a finer one. Its multipliers then lead to the one that presses against
+    the same limits. So the solver starts once more from the motion of the best, without them.
 
     Args:
         session: hears of every solve.

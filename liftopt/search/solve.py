@@ -27,8 +27,8 @@ from liftopt.search.solve_starts import solve_starts
 from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
 
-# Postures searched from, for each start tried on a coarse mesh: of 44 widely varied lifts, each with two seeds, 86
-# of 88 came within 5 % of what takes five times as long, with one 80 of 86, with one and twice the starts 85 of 88.
+# Postures searched from, for each start tried on a coarse mesh: with one, some lifts miss the best motion
+# (docs/tuning.md).
 SEEDS_A_TRY = 2
 # Times as many starts are tried before a lift that has postures at both ends counts as impossible, and iterations of
 # each: half of those that converge take fewer.

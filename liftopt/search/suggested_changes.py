@@ -34,7 +34,7 @@ ENOUGH = 4  # changes that are told
 # the time they take.
 WORK, POSTURES, INTERVALS = 3000.0, 70.0, 20
 HOLDS = 4.0  # likewise, whether the object can be held at both ends of a motion that is known
-# Of seeds, for postures. With three rounds of them and as much work in all, two of eight changes were not found.
+# Of seeds, for postures: more rounds take the work that other changes need (docs/tuning.md).
 ROUNDS = 1
 GROWTH = 1.6  # of a change that does not help yet
 FINEST_CHANGED = 160  # intervals of the finest mesh of a changed scenario
@@ -126,8 +126,8 @@ class _Trials:
 
         postures = cache.postures(problem, scenario)
         if near and near.problem.same_structure(problem):
-            held = self._held(postures, problem, near)
-            return solved(InitialGuess("near", near.result.x), near) if held else None
+            holds = self._holds(postures, problem, near)
+            return solved(InitialGuess("near", near.result.x), near) if holds else None
         deadline, seed = self.session.deadline, scenario.solver.seed
         starts = posture_starts(problem, STARTS, seed, deadline, postures=postures, rounds=ROUNDS)
         self.left -= POSTURES
@@ -162,7 +162,7 @@ class _Trials:
         except SolverError:
             return self.session.cache.solver(problem, scenario, scenario.solver.name)
 
-    def _held(self, postures: PostureSolver, problem: Problem, near: Candidate) -> bool:
+    def _holds(self, postures: PostureSolver, problem: Problem, near: Candidate) -> bool:
         """Whether the object can be held still at both ends, much as the motion of a candidate does.
 
         A motion need not: it may begin to fall. But a solve of the changed scenario asks for it first.

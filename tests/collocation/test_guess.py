@@ -23,9 +23,9 @@ from liftopt.search.initial_guess import (
     naive_guess,
     posture_starts,
     recombined,
-    turned,
+    turned_back,
 )
-from liftopt.search.moves import ELSEWHERE, SAME, Move, _least_there, apart, combinations
+from liftopt.search.moves import ELSEWHERE, SAME_MOVE, Move, _least_there, apart, combinations
 from liftopt.search.postures import PostureSolver, seed_coordinates
 
 
@@ -174,7 +174,7 @@ def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift:
         for n in range(len(moves)):
             for m in range(n):
                 distance = max(np.linalg.norm(end[n] - end[m], axis=1).max() for end in ends)
-                assert distance > SAME
+                assert distance > SAME_MOVE
 
 
 def test_turning_a_joint_about_its_own_axis_moves_nothing(team: Team) -> None:
@@ -185,7 +185,7 @@ def test_turning_a_joint_about_its_own_axis_moves_nothing(team: Team) -> None:
     assert apart(robot, q).max() < 0.01
     q[1, 0] += 1.0
     between = apart(robot, q)
-    assert between[0, 1] == between[1, 0] > SAME
+    assert between[0, 1] == between[1, 0] > SAME_MOVE
 
 
 def _result(start: InitialGuess, objective: float, converged: bool = True) -> SolverResult:
@@ -217,16 +217,16 @@ def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) 
     """Sawyer's fifth joint has 5.96 rad: at its upper limit, a full turn back is its lower limit, to 0.33 rad."""
     robot, layout = small_lift.team.agents[1], small_lift.layout
     x = naive_guess(small_lift).x
-    assert turned(small_lift, x) is None
+    assert turned_back(small_lift, x) is None
     column = layout.control[:, layout.columns(1)][:, 4]
     x[column] = robot.limits.q_upper[4]
-    start = turned(small_lift, x)
+    start = turned_back(small_lift, x)
     assert start is not None
     np.testing.assert_allclose(start.x[column], robot.limits.q_lower[4])
     others = np.setdiff1d(np.arange(len(x)), column)
     np.testing.assert_array_equal(start.x[others], x[others])
     x[column] = robot.limits.q_upper[4] - 2 * PRESSED
-    assert turned(small_lift, x) is None
+    assert turned_back(small_lift, x) is None
 
 
 def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[InitialGuess], small_lift: Problem) -> None:

@@ -43,10 +43,10 @@ def tenfold(monkeypatch: pytest.MonkeyPatch) -> int:
     def ten(problem: object, x: np.ndarray) -> Iterator[InitialGuess]:
         return iter([InitialGuess(str(n), 10.0 * x + n) for n in range(count)])
 
-    monkeypatch.setattr(variations, "mirrored", ten)
-    monkeypatch.setattr(variations, "rests", lambda *_: [])
-    monkeypatch.setattr(variations, "detours", lambda *_: [])
-    monkeypatch.setattr(variations, "other_ways", lambda *_: [])
+    monkeypatch.setattr(variations, "mirrored_joints", ten)
+    monkeypatch.setattr(variations, "low_cost_postures", lambda *_: [])
+    monkeypatch.setattr(variations, "via_postures", lambda *_: [])
+    monkeypatch.setattr(variations, "alternative_paths", lambda *_: [])
     return count
 
 
@@ -67,7 +67,7 @@ def test_the_best_is_varied_first_and_none_that_is_too_far_above_it(tenfold: int
     assert {incumbent for _, incumbent in solver.asked} == {10.0}
 
 
-def test_what_is_better_is_varied_next_and_becomes_the_rival_of_the_next_turn(tenfold: int) -> None:
+def test_what_is_better_is_varied_next_and_becomes_the_incumbent_of_the_next_turn(tenfold: int) -> None:
     solver = Table({13.0: 8.0, 131.0: 7.0})
     asked = _vary(solver, [_result(1.0, 10.0)], 2 * TURN)
     assert asked[:TURN] == [10.0 + n for n in range(TURN)]

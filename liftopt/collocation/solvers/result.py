@@ -14,7 +14,7 @@ from liftopt.collocation.solvers.deadline import Deadline
 Array = npt.NDArray[np.float64]
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
-# Of a solver that was given a rival: no failure, but not worth going on.
+# Of a solver that was given an incumbent: no failure, but not worth going on.
 PRUNED = "Worse_Than_Rival"
 
 

@@ -17,7 +17,7 @@ from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
-from liftopt.collocation.solvers.simd_nlp import wide_nlp
+from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import LiftTask
 from liftopt.search.initial_guess import InitialGuess
 
@@ -32,7 +32,7 @@ def kernels(small_lift: Problem) -> list[SimdKernel]:
 
 @pytest.fixture(scope="module")
 def simd(small_lift: Problem, kernels: list[SimdKernel]) -> Nlp:
-    return wide_nlp(small_lift, kernels)
+    return simd_nlp(small_lift, kernels)
 
 
 def everything(nlp: Nlp, x: np.ndarray, p: np.ndarray, sigma: float, lam: np.ndarray) -> list[ca.DM]:
