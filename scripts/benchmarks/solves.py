@@ -118,7 +118,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     for intervals in meshes:
         steps = [_stepwise(varied, intervals, repeats) for varied in lifts]
         found["stepwise_ms"].append(float(np.mean([1e3 * timing.median for timing, _ in steps])))
-        last = [plan.result.iterations for _, plan in steps if plan]
+        last = [candidate.result.iterations for _, candidate in steps if candidate]
         found["stepwise_iterations"].append(float(np.mean(last)))
         found["not_converged"] += [intervals] * (len(steps) - len(last))
     an_interval = np.array(found["ms"]) / np.array(meshes)
@@ -147,10 +147,10 @@ def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Can
 
     def solve() -> Candidate | None:
         result = case.solve(solver)
-        plan = Candidate(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
+        candidate = Candidate(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
         for n in finer:
-            plan = plan and optimum_on_mesh(cache, plan, n, ("banded",), Deadline.after(PATIENCE), print)
-        return plan
+            candidate = candidate and optimum_on_mesh(cache, candidate, n, ("banded",), Deadline.after(PATIENCE), print)
+        return candidate
 
     return repeat(repeats, solve)
 

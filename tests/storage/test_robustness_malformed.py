@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 from liftopt.commands.cli import main
-from liftopt.files.checksum import DIGEST_BYTES, sealed
+from liftopt.files.checksum import DIGEST_BYTES, with_checksum
 from liftopt.scenario.model import load_scenario, scenario_to_toml
 
 PATIENCE = 60  # seconds for one file, only so that a hang fails
@@ -172,14 +172,14 @@ def test_a_hundred_damaged_results_are_refused(
     assert readable < 2 * count
 
 
-def _rewritten(folder: Path, change: Callable[[h5py.File], object], seal: bool = True) -> None:
-    """Change solution.nc from inside and seal it again, as somebody who knows how would."""
+def _rewritten(folder: Path, change: Callable[[h5py.File], object], checksum: bool = True) -> None:
+    """Change solution.nc from inside with its checksum made anew, as somebody who knows how would."""
     path = folder / "solution.nc"
     path.write_bytes(path.read_bytes()[:-DIGEST_BYTES])
     with h5py.File(path, "r+") as file:
         change(file)
-    if seal:
-        path.write_bytes(sealed(path.read_bytes()))
+    if checksum:
+        path.write_bytes(with_checksum(path.read_bytes()))
 
 
 ODD: list[Any] = [None, True, -1, 1e999, "text", "", [], [[]], {}, {"a": {"b": None}}, 10**400, [None], "\x1b[2J\n"]
@@ -280,7 +280,7 @@ def test_a_hostile_netcdf_is_refused(
 ) -> None:
     folder = Path(shutil.copytree(result, tmp_path / "result"))
     os.mkfifo(folder / "pipe")
-    _rewritten(folder, HOSTILE_NETCDF[case], seal=case != "a filter")
+    _rewritten(folder, HOSTILE_NETCDF[case], checksum=case != "a filter")
     assert refused(_view(folder)).startswith(f"liftopt: error: {folder / 'solution.nc'}: ")
 
 
@@ -365,7 +365,7 @@ def test_what_is_no_file_is_refused(
 def test_a_result_runs_no_module_that_stands_beside_it(result: Path, tmp_path: Path) -> None:
     """Whoever unpacks a stranger's result may stand in its folder; what another program wrote is read apart."""
     folder = Path(shutil.copytree(result, tmp_path / "result"))
-    _rewritten(folder, lambda file: file.attrs.__setitem__("record", "{}"), seal=False)
+    _rewritten(folder, lambda file: file.attrs.__setitem__("record", "{}"), checksum=False)
     for name in ("numpy", "h5py", "json", "liftopt", "sitecustomize"):
         (folder / f"{name}.py").write_text("open('ran', 'w')")
     path = [p for p in sys.path if p]
@@ -383,7 +383,7 @@ def test_a_read_that_hangs_is_ended(result: Path, tmp_path: Path, monkeypatch: p
     from liftopt.storage.reader import load_result
 
     folder = Path(shutil.copytree(result, tmp_path / "result"))
-    _rewritten(folder, lambda file: None, seal=False)
+    _rewritten(folder, lambda file: None, checksum=False)
     monkeypatch.setattr(netcdf_file, "PATIENCE", 0.2)
     monkeypatch.setattr(netcdf_file, "READ", "import time; time.sleep(60)")
     with pytest.raises(InputError, match=r"it is damaged: reading it takes more than 0.2 s"):
