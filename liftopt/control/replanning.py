@@ -34,16 +34,16 @@ WARM = "last optimum"
 class Replanner:
     """Plans one scenario after the other, each from the optimum of the one before; for one thread.
 
-    A warm solve follows one local optimum as the scenario changes. Where a better one has appeared elsewhere, only
-    ``lift`` or ``solve(..., cold=True)`` finds it. The solver is the scenario's: ``solver.name=banded`` is the one that
-    is fast from a warm start.
+    A warm solve follows one local optimum as the scenario changes. Where a better one has appeared elsewhere, only a
+    search from many starts (``cold=True``) finds it. The solver is the scenario's: ``solver.name=banded`` is the one
+    that is fast from a warm start.
 
     Attributes:
         latest: the plan that the next one starts from, None before the first.
     """
 
     def __init__(self, progress: Progress | None = None, cache: SolverCache | None = None) -> None:
-        """Start without one.
+        """Start without an optimum.
 
         Args:
             progress: hears one line at a time of what is going on.
@@ -54,7 +54,7 @@ class Replanner:
         self._progress = progress or (lambda line: None)
 
     def solve(self, scenario: Scenario, *, cold: bool = False) -> Solution:
-        """Return the verified solution of a scenario, or why there is none in its ``status``, as ``lift`` does.
+        """Return the verified solution of a scenario, or why there is none in its ``status``.
 
         Args:
             scenario: what to lift.

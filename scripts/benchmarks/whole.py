@@ -87,7 +87,7 @@ def many_starts(repeats: int) -> Row:
 
 
 @cache
-def _workshop() -> SolverCache:
+def _cache() -> SolverCache:
     """Return what this worker keeps from lift to lift."""
     return SolverCache()
 
@@ -96,7 +96,7 @@ def _half(seed: int, starts: int) -> float:
     """Return the objective of the best of some starts; in a worker."""
     overrides = ["solver.name=banded", "solver.workers=1", f"solver.starts={starts}", f"solver.seed={seed}"]
     scenario = table5().scenario(*overrides)
-    solution = solve(scenario, cache=_workshop())
+    solution = solve(scenario, cache=_cache())
     return solution.objective if solution.solved else float("inf")
 
 

@@ -77,7 +77,7 @@ def test_each_start_gets_its_share_in_iterations_and_all_the_time() -> None:
 
 
 @pytest.mark.parametrize("tries", [0, 6])
-def test_workers_and_a_kept_workshop_change_nothing(tries: int) -> None:
+def test_workers_and_a_kept_cache_change_nothing(tries: int) -> None:
     """Bit by bit: one worker, two workers, and a second time with what was kept; some starts are given up."""
     overrides = ["solver.name=banded", "solver.starts=6", "solver.intervals=16", f"solver.tries={tries}"]
     one = solve(load_scenario("table5", [*overrides, "solver.workers=1"]))
