@@ -23,7 +23,7 @@ import numpy as np
 from sample_scenarios import drawn
 
 from liftopt.errors import LiftoptError
-from liftopt.scenario.model import load_scenario, with_overrides
+from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.solve import solve
 
@@ -70,7 +70,7 @@ def answers(count: int, seed: int, overrides: list[str]) -> list[Answer]:
     for drawn_overrides in drawn(500, seed)[:count]:
         began = time.process_time()
         try:
-            solution = solve(with_overrides(load_scenario("table5"), [*drawn_overrides, *overrides]), cache=cache)
+            solution = solve(load_scenario("table5", [*drawn_overrides, *overrides]), cache=cache)
         except LiftoptError:
             found.append(Answer(np.nan, 0, 0, time.process_time() - began))
             continue

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from liftopt.errors import InputError
-from liftopt.scenario.model import Scenario, scenario_from_dict, scenario_to_dict
+from liftopt.scenario.model import Scenario
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 
 LEAST_MOVE = 0.05  # [m], tried first where nothing says how far to move
@@ -44,19 +44,13 @@ class Adjustable:
 
     def values(self, scenario: Scenario) -> tuple[float, ...]:
         """Return its values in a scenario, in the order of ``keys``."""
-        return tuple(_get(scenario, key) for key in self.keys)
+        return tuple(scenario.value(key) for key in self.keys)
 
     def changed(self, scenario: Scenario, steps: int) -> Scenario | None:
         """Return the scenario with its values so many steps on, on the grid of steps; None if it would be none."""
-        data = scenario_to_dict(scenario)
-        for key in self.keys:
-            *path, name = key.split(".")
-            section = data
-            for part in path:
-                section = section[part]
-            section[name] = round(round(section[name] / self.step + steps) * self.step, 6)
+        grid = {key: round(round(scenario.value(key) / self.step + steps) * self.step, 6) for key in self.keys}
         try:
-            return scenario_from_dict(data)
+            return scenario.replace(grid)
         except InputError:
             return None
 
@@ -72,7 +66,7 @@ class Adjustable:
                 continue
             if not self.relative:
                 change = reason.amount if reason.unit == "m" else 0.0
-            elif self.keys == ("table.mass",):
+            elif self.keys == ("object.mass",):
                 change = was * reason.share / (1.0 + reason.share)
             else:
                 change = was * reason.share
@@ -94,7 +88,7 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
     found = [
         Adjustable(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
                    frozenset({"velocity", "torque", "grasp_force", "closure"}), 600, relative=True),
-        Adjustable(("table.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
+        Adjustable(("object.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
         Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
                    frozenset({"grasp_force"}), 512, relative=True),
         Adjustable(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
@@ -109,13 +103,13 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
             where + " {change:.2f} m farther from the person",
         )
         found.append(Adjustable(keys, 0.01, 0.1, nearer, farther, _POSTURE))
-    return [
-        *found,
-        Adjustable(("robot.base_height",), 0.01, 0.1, "robot base {change:.2f} m lower",
-                   "robot base {change:.2f} m higher", _POSTURE),
-        Adjustable(("table.depth",), 0.01, 0.1, "object at most {value:.2f} m deep",
-                   "object at least {value:.2f} m deep", _POSTURE),
-    ]  # fmt: skip
+    for name, agent in scenario.agents.items():
+        if agent.kind == "robot":
+            lower, higher = f"{name} base {{change:.2f}} m lower", f"{name} base {{change:.2f}} m higher"
+            height = f"{name}.base_height" if agent.base.z is None else f"{name}.base.z"
+            found.append(Adjustable((height,), 0.01, 0.1, lower, higher, _POSTURE))
+    shallower, deeper = "object at most {value:.2f} m deep", "object at least {value:.2f} m deep"
+    return [*found, Adjustable(("object.depth",), 0.01, 0.1, shallower, deeper, _POSTURE)]
 
 
 def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]]:
@@ -125,10 +119,3 @@ def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]
         yield (f"task.{end}.{name}",), f"{end} height" if name == "height" else f"object at the {end}"
     if len(given) == 2 and name != "height":
         yield tuple(f"task.{end}.{name}" for end in given), f"{what} at both ends"
-
-
-def _get(scenario: Scenario, key: str) -> float:
-    value: object = scenario
-    for part in key.split("."):
-        value = getattr(value, part)
-    return float(value)  # type: ignore[arg-type]

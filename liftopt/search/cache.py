@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from functools import partial
+from operator import is_not
 from typing import Any, TypeVar
 
 from liftopt.collocation.codegen.kernels import Progress
@@ -12,7 +14,7 @@ from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Solver
 from liftopt.collocation.spline import Mesh, RestToRestSpline
-from liftopt.scenario.build import human_of, object_of, robot_of, task_of
+from liftopt.scenario.build import agent_key, agent_of, object_key, object_of, task_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.postures import PostureSolver
 
@@ -40,24 +42,21 @@ class SolverCache:
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
         """Return the lift of a scenario on a mesh; ``progress`` hears of it when kernels must be compiled first."""
-        robot = (scenario.robot, scenario.task.standing_distance)
-        agents = (
-            self._kept("human", scenario.human, lambda: human_of(scenario)),
-            self._kept("robot", robot, lambda: robot_of(scenario)),
+        agents = tuple(
+            self._kept(name, agent_key(scenario, name), partial(agent_of, scenario, name)) for name in scenario.agents
         )
-        lifted = self._kept("table", scenario.table, lambda: object_of(scenario))
-        team = self._team
-        if team is None or any(
-            new is not old for new, old in zip((*agents, lifted), (*team.agents, team.object), strict=True)
-        ):
+        lifted = self._kept("the object", object_key(scenario), partial(object_of, scenario))
+        team, models = self._team, (*agents, lifted)
+        known = (*team.agents, team.object) if team else ()
+        if team is None or len(known) != len(models) or any(map(is_not, models, known)):
             team = self._team = Team.of(agents, lifted, progress, like=team)
         if spline not in self._meshes:
             self._meshes[spline] = spline.mesh()
-        known = self._problems.get(spline)
-        if known is None or known[0] != scenario or known[1].team is not team:
-            known = scenario, Problem(team, task_of(scenario), self._meshes[spline])
-            self._problems[spline] = known
-        return known[1]
+        kept = self._problems.get(spline)
+        if kept is None or kept[0] != scenario or kept[1].team is not team:
+            kept = scenario, Problem(team, task_of(scenario), self._meshes[spline])
+            self._problems[spline] = kept
+        return kept[1]
 
     def solver(
         self,

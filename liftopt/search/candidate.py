@@ -98,6 +98,7 @@ class Candidate:
         """
         motion, team = motion_at(self.problem, self.spline, self.result.x, self.spline.phase), self.problem.team
         terms, weights = objective_terms(motion), objective_weights(self.problem)
+        files = urdf_files(self.scenario)
         urdfs = {agent.name: agent.urdf for agent in team.agents} | {team.object.name: team.object.urdf}
         files = urdf_files(self.scenario)
         return Solution(

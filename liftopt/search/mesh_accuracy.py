@@ -20,7 +20,7 @@ import numpy as np
 
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.spline import FEWEST, FINEST
-from liftopt.scenario.model import Refine
+from liftopt.scenario.settings import Refine
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.optimum_on_mesh import FASTEST_FIRST, optimum_on_mesh

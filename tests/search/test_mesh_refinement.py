@@ -32,7 +32,7 @@ from liftopt.solution.summary import summary_dict
 from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 
-BANDED = ("solver.name=banded", "solver.starts=2")
+BANDED = ("solver.name=banded", "solver.starts=2", "solver.time_limit=3600")
 # Hermite-Simpson on the states without zero acceleration at the ends, on 20 intervals: crosscheck/transcriptions.py.
 LIMIT_OF_TABLE5 = 817.3
 
