@@ -51,15 +51,15 @@ def test_grasps_lack_half_the_weight_less_their_cap(cap: float, mass: float) -> 
 def test_a_robot_too_far_away_leaves_the_gap_of_inverse_kinematics_and_the_object_in_balance() -> None:
     """Nothing but closure is broken; the gap is no smaller than the shortest, and the balance is never for sale."""
     problem = _problem("task.standing_distance=2.3", *STILL)
-    obstacles, _ = screen_ends(problem, 0, NEVER)
+    reasons, _ = screen_ends(problem, 0, NEVER)
     found = solve_elastic(problem, naive_guess(problem).x, NEVER)
     first = found.violations[0]
     assert found.converged
     assert (first.constraint, first.unit) == ("closure", "m")
     gaps = sum(v.amount for v in found.violations if v.constraint == "closure")
     # The price is on the sum of the components, which is up to sqrt(3) of the distance.
-    shortest = min(obstacle.amount for obstacle in obstacles)
-    assert shortest - 1e-4 < gaps < 3**0.5 * max(obstacle.amount for obstacle in obstacles)
+    shortest = min(reason.amount for reason in reasons)
+    assert shortest - 1e-4 < gaps < 3**0.5 * max(reason.amount for reason in reasons)
     balance = next(block for block in problem.constraints.blocks if block.name == "balance")
     rows = Batch(problem).rows(found.x[None])[0][balance.rows]
     assert np.abs(rows).max() < 1e-3

@@ -1,4 +1,4 @@
-"""Scouts: their optima are put to Pinocchio, and must be what the fine mesh is given."""
+"""The coarse search: Pinocchio judges its optima, and they must be what the fine mesh is given."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def _session(*overrides: str) -> tuple[Session, InitialGuessSet]:
     return session, guesses
 
 
-def test_scouts_bring_different_optima_of_half_the_intervals_the_best_first() -> None:
-    """Each is first-order optimal by Pinocchio's derivatives, as far as scouts go."""
+def test_it_brings_different_optima_of_half_the_intervals_the_best_first() -> None:
+    """Each is first-order optimal by Pinocchio's derivatives, as far as a coarse search goes."""
     session, guesses = _session("solver.starts=3")
     candidates = coarse_search(session, session.spline, guesses, 12)
     assert 1 <= len(candidates) <= 3
@@ -61,12 +61,12 @@ def test_a_fine_mesh_is_reached_from_mesh_to_mesh() -> None:
         chain.append(chain[-1].origin)
     assert [link.spline.intervals for link in chain] == [80, 40, 20]
     assert any(" variations on 20 intervals led to" in note for note in session.notes)
-    told = [record.name for record in session.records]
-    assert any(name.endswith(", N = 40") for name in told) and not told[-1].endswith(", N = 80")
-    assert len(set(told)) == len(told)
+    recorded = [record.name for record in session.records]
+    assert any(name.endswith(", N = 40") for name in recorded) and not recorded[-1].endswith(", N = 80")
+    assert len(set(recorded)) == len(recorded)
 
 
-def test_no_scouts_where_half_the_mesh_is_too_coarse_or_none_are_asked_for() -> None:
+def test_no_coarse_search_where_half_the_mesh_is_too_coarse_or_no_tries_are_asked_for() -> None:
     coarse, guesses = _session("solver.intervals=10")
     assert coarse_search(coarse, coarse.spline, guesses, 12) == []
     session, guesses = _session()
@@ -74,7 +74,7 @@ def test_no_scouts_where_half_the_mesh_is_too_coarse_or_none_are_asked_for() -> 
     assert session.notes == []
 
 
-def test_the_search_goes_on_without_scouts_where_their_solver_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_search_goes_on_where_the_solver_of_the_coarse_search_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     session, guesses = _session()
 
     def missing(*_: object) -> None:

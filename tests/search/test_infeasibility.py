@@ -131,7 +131,7 @@ def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(mo
 
 
 @pytest.mark.parametrize("overrides", [FAR, WEAK, HEAVY])
-def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, ...]) -> None:
+def test_each_suggested_change_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, ...]) -> None:
     """Solved from the beginning, not from the motion that led to it; a heavy object could be let fall at first."""
     solution = _solution(*overrides)
     assert solution.suggested_changes == tuple(sorted(solution.suggested_changes, key=lambda change: change.size))
@@ -145,7 +145,7 @@ def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, 
         assert solve(solution.scenario.replace(changes), cache=_cache()).solved
 
 
-def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
+def test_no_work_or_no_time_no_suggested_change_and_the_scenario_stays_as_it_is() -> None:
     scenario = load_scenario("table5", [*BANDED, *FAR])
     before = scenario.to_dict()
     session = Session(scenario, _cache())
@@ -156,7 +156,7 @@ def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
     assert scenario.to_dict() == before
 
 
-def test_a_change_that_leaves_what_a_model_can_be_is_no_remedy() -> None:
+def test_a_change_that_leaves_what_a_model_can_be_is_not_suggested() -> None:
     """A scenario takes a base height of 0.01 m, Sawyer's model none below 0.1 m."""
     scenario = load_scenario("table5", [*BANDED, "robot.base_height=0.3"])
     session = Session(scenario, _cache())
@@ -192,7 +192,7 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
 
 
 def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first scouts come back with nothing and the starts on the full mesh fail; those after them find the lift."""
+    """The first coarse search comes back with nothing and the starts on the full mesh fail; those after them find the lift."""
     asked: list[int] = []
 
     def blind(

@@ -88,19 +88,19 @@ def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Candidate) -> None:
     np.testing.assert_allclose(back, coarse.result.x, atol=1e-9)
 
 
-def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Candidate) -> None:
-    """Against a rival of a tenth of its objective, and against none."""
-    told: list[tuple[str, str]] = []
+def test_a_candidate_that_cannot_win_is_given_up_and_heard_of(coarse: Candidate) -> None:
+    """Against an incumbent of a tenth of its objective, and against none."""
+    heard: list[tuple[str, str]] = []
     incumbent = replace(coarse.result, objective=0.1 * coarse.result.objective)
 
     def tell(name: str, result: SolverResult) -> None:
-        told.append((name, result.status))
+        heard.append((name, result.status))
 
     given = (SolverCache(), coarse, 40, ("banded",), NEVER, lambda line: None)
     assert optimum_on_mesh(*given, incumbent=incumbent, on_solve=tell) is None
     there = optimum_on_mesh(*given, on_solve=tell)
     assert there is not None
-    assert told == [(there.start, PRUNED), (there.start, there.result.status)]
+    assert heard == [(there.start, PRUNED), (there.start, there.result.status)]
 
 
 def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Candidate) -> None:
@@ -121,10 +121,10 @@ def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Candid
     assert best.result.objective == pytest.approx(min(led), rel=SAME_OPTIMUM)
 
 
-def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
+def test_a_start_with_an_incumbent_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
     coarse: Candidate, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """IPOPT is no help against a rival; from 20 intervals 80 are reached even if 40 fail."""
+    """IPOPT is no help against an incumbent; from 20 intervals 80 are reached even if 40 fail."""
     solve = Banded.solve
 
     def fail_on_40(self: Banded, x0: Any, **given: Any) -> SolverResult:
@@ -205,7 +205,7 @@ def test_what_is_unmet_is_named_with_its_amount() -> None:
         assert words in text
 
 
-def test_rivals_are_what_the_mesh_cannot_tell_apart() -> None:
+def test_indistinguishable_are_what_the_mesh_cannot_tell_apart() -> None:
     candidates = [_candidate(20, objective) for objective in (100.0, 100.001, 105.0, 130.0)]
     known = Accuracy(0.0, 0.0, 0.0, 90.0, 0.1)
     assert [candidate.result.objective for candidate in indistinguishable(candidates, candidates[0], known)] == [

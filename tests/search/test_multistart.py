@@ -24,7 +24,7 @@ class Slow:
 
     busy: threading.Lock = field(default_factory=threading.Lock)
     given: list[tuple[Deadline, int | None]] = field(default_factory=list)
-    rivals: dict[float, SolverResult | None] = field(default_factory=dict)
+    incumbents: dict[float, SolverResult | None] = field(default_factory=dict)
     converges: bool = True
 
     def solve(
@@ -41,7 +41,7 @@ class Slow:
         assert self.busy.acquire(blocking=False), "two threads use one solver"
         time.sleep(float(x0[0]))
         self.given.append((deadline, most))
-        self.rivals[float(x0[0])] = incumbent
+        self.incumbents[float(x0[0])] = incumbent
         self.busy.release()
         return SolverResult(x0, Multipliers(x0, x0), float(x0[0]), 1, self.converges, STOPPED, 0.0, 0.0)
 
@@ -56,14 +56,14 @@ def test_results_come_in_the_order_of_the_starts(workers: int) -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 4])
-def test_the_first_optimum_is_the_rival_of_all_that_join_moves(workers: int) -> None:
+def test_the_first_optimum_is_the_incumbent_of_all_that_join_moves(workers: int) -> None:
     """However many solve at a time: what a start is compared with must not depend on who is quicker."""
     starts = [InitialGuess(f"start {i}", np.array([wait]), (i, 0)) for i, wait in enumerate((0.03, 0.0, 0.02))]
     starts.append(InitialGuess("naive", np.array([0.01])))
     for converges in (True, False):
         solvers = [Slow(converges=converges) for _ in range(workers)]
         list(solve_all(solvers, starts, NEVER))
-        given = {x: r for solver in solvers for x, r in solver.rivals.items()}
+        given = {x: r for solver in solvers for x, r in solver.incumbents.items()}
         assert given[0.03] is given[0.01] is None
         assert all((r.objective, r.converged) == (0.03, converges) for r in (given[0.0], given[0.02]) if r)
         assert given[0.0] and given[0.02]
