@@ -192,7 +192,7 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
 
 
 def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first coarse search comes back with nothing and the starts on the full mesh fail; those after them find the lift."""
+    """The first coarse search finds nothing and the starts on the full mesh fail; those after them find the lift."""
     asked: list[int] = []
 
     def blind(
