@@ -1,8 +1,8 @@
-"""Which limits a lift would have to break, where, when and by how much: the problem with a price on breaking them.
+"""The elastic mode: which limits a lift would have to break, where, when and by how much.
 
-Every row but the balance may be violated; what is violated is paid for, linearly, so that few rows are (an exact
-penalty: a lift that is possible is found with none broken). A little of the objective is kept, to choose among motions.
-Ranges of motion, poses at the ends and the object's balance hold as ever.
+Every row but the balance may be violated, at a price that is linear in the violation. So few rows are violated, and a
+lift that is possible is found with none broken (an exact penalty). A little of the objective is kept, to choose among
+motions. Ranges of motion, poses at the ends and the object's balance always hold.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How far an optimum is from the lift in continuous time, told by the same motion on another mesh.
+"""The accuracy of an optimum: how far it is from the lift in continuous time, by the same motion on another mesh.
 
 The objective falls at second order in the step, J(h) = J(0) + c h**2, by the trapezoid rule and as forces are linear
 between knots. With zero acceleration at both ends (eq. 19) it falls at first order: that costs a ramp over one
@@ -7,8 +7,8 @@ J(0) = J(h) - (J(r h) - J(h)) / (r**p - 1) (Richardson). On coarse meshes higher
 is the finer one where it can be had (``TELLING``). The residuals between knots fall at second order (balance, torques)
 and faster (closure).
 
-Two optima can be compared only if they are the same motion: from one, the other is solved on its own mesh, and if it
-ends elsewhere there is no estimate.
+Two optima can be compared only if they are the same motion. So the solver starts from one of them on the other mesh. If
+it ends at another motion, there is no estimate.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ TELLING = 20
 
 
 def estimate(cache: SolverCache, candidate: Candidate, deadline: Deadline, progress: Progress) -> Accuracy:
-    """Return the accuracy of a verified candidate, from its optimum on twice as many intervals, or on half as many.
+    """Return the accuracy of a verified candidate, from the same motion on twice or on half as many intervals.
 
     Args:
         cache: where solvers come from.
@@ -69,7 +69,7 @@ def compared(candidate: Candidate, other: Candidate) -> Accuracy:
 
 
 def distance(one: Candidate, other: Candidate) -> float:
-    """Return how far two motions are apart: root mean square over time, of what differs most [rad, m]."""
+    """Return how far two motions are apart: of what differs most, root mean square over time [rad, m]."""
     phase = np.linspace(0.0, 1.0, 4 * max(one.spline.intervals, other.spline.intervals) + 1)
     first, second = (
         candidate.spline.basis(phase) @ candidate.problem.unpack(candidate.result.x)[0] for candidate in (one, other)
@@ -78,7 +78,7 @@ def distance(one: Candidate, other: Candidate) -> float:
 
 
 def unmet(accuracy: Accuracy, wanted: Refine) -> str:
-    """Return what is not accurate enough, how much it is and how much is asked for, in one line; empty if all is."""
+    """Return what is not accurate enough, with its value and what is asked for, in one line; empty if all is."""
     figures = (
         ("estimated error of the objective", accuracy.objective_error, wanted.objective_error, 100.0, " %"),
         ("closure between knots", accuracy.closure, wanted.closure, 1e3, " mm"),

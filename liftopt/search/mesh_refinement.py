@@ -1,7 +1,7 @@
-"""Mesh refinement: optima on meshes of twice the intervals, until they verify and are as accurate as asked for.
+"""Mesh refinement: optima on meshes of twice the intervals, until they are verified and as accurate as asked for.
 
-Each refinement starts not from the best optimum alone but from all that the coarse mesh cannot tell from it: their
-order may change.
+The order of optima may change from mesh to mesh. So each refinement starts from all optima that the coarse mesh cannot
+tell from the best one.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ def refine_while(
     deadline: Deadline,
     finest: int = FINEST,
 ) -> T:
-    """Return what becomes of something on meshes of twice the intervals, again and again, while it is too coarse.
+    """Double the intervals of a mesh, again and again, while what stands on it is too coarse; return what comes out.
 
     Args:
-        coarse: what stands on a mesh.
-        too_coarse: whether it needs a finer one.
-        refine: makes it anew on so many intervals; None where that fails, which ends it.
+        coarse: what stands on the first mesh.
+        too_coarse: whether it needs a finer mesh.
+        refine: makes it anew on so many intervals; None where that fails, which ends the refinement.
         deadline: past which no other mesh is begun.
         finest: intervals of the finest mesh.
     """
@@ -65,10 +65,9 @@ def refine_while(
 
 
 def refine_mesh(session: Session, candidates: Sequence[Candidate], intervals: int) -> Found | None:
-    """Return the best verified optimum that others lead to on so many intervals; None if there is none.
+    """Return the best verified optimum on so many intervals that candidates of another mesh lead to; None without one.
 
-    Meshes between, each twice as fine, are solved on the way: from the one before, an optimum takes a third of the
-    iterations it takes from a motion alone.
+    Meshes between, each twice as fine, are solved on the way: that takes fewer iterations in all.
     """
     for between in meshes_below(intervals):
         if candidates and between > candidates[0].spline.intervals:
@@ -90,7 +89,7 @@ def meshes_below(intervals: int) -> list[int]:
 def continue_on_mesh(
     session: Session, candidates: Sequence[Candidate], intervals: int, margin: float = 1.0
 ) -> list[Candidate]:
-    """Return the optima that others lead to on so many intervals, each once, the best first.
+    """Return the optima on so many intervals that candidates of another mesh lead to, each once, the best first.
 
     One optimum of a coarse mesh may be two on a finer one. Its multipliers then lead to the one that presses against
     the same limits. So the solver starts once more from the motion of the best, without them.
@@ -99,7 +98,7 @@ def continue_on_mesh(
         session: hears of every solve.
         candidates: on another mesh, the best first.
         intervals: of the mesh they are taken to.
-        margin: how many times the best objective is still of interest; what promises none below is left.
+        margin: how many times the best objective is still of interest; a solve that promises none below is given up.
     """
     found: list[Candidate] = []
     solvers = tuple(dict.fromkeys((session.scenario.solver.name, IPOPT)))
@@ -127,7 +126,7 @@ def continue_on_mesh(
 
 
 def refine_until_verified(session: Session, found: Found) -> Found:
-    """Return what was found on a mesh so fine that the grasps also close between the knots, if it takes one."""
+    """Return what was found, refined until the grasps also close between the knots."""
 
     def refine(coarse: Found, intervals: int) -> Found:
         candidate = coarse.best
@@ -147,10 +146,10 @@ def refine_until_verified(session: Session, found: Found) -> Found:
 
 
 def refine_to_tolerance(session: Session, found: Found) -> Found:
-    """Return what was found with its accuracy, if it is solved, on a mesh as fine as the scenario asks for.
+    """Return a solved lift with its accuracy, refined until it is what the scenario asks for (``Refine``).
 
-    It goes from mesh to mesh until ``Refine`` is met, time is over or the mesh is the finest there may be; what came of
-    it is among the notes.
+    It ends earlier where time is over or the mesh is the finest there may be. The notes say how it ended. What is not
+    solved is returned as it is.
     """
     if not found.best.solved:
         return found
@@ -190,7 +189,7 @@ def refine_to_tolerance(session: Session, found: Found) -> Found:
 
 
 def _accuracy(session: Session, candidate: Candidate, origin: Candidate | None) -> Accuracy:
-    """Return the accuracy of a candidate beside where it came from, or where that tells little beside another mesh."""
+    """Return the accuracy of a candidate by the one it came from, or by another mesh where that tells too little."""
     if origin is not None and origin.spline.intervals >= TELLING and (known := compared(candidate, origin)).estimated:
         return known
     return estimate(session.cache, candidate, session.deadline, session.progress)

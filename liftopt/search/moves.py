@@ -183,7 +183,7 @@ def apart(agent: Agent, q: Array) -> Array:
 
 
 def _different(pairs: npt.NDArray[np.int64], rank: Array, between: list[Array], most: int) -> list[int]:
-    """Return which moves rank first of which no two are the same; ``between``: how far the postures are apart."""
+    """Return the moves that rank first, no two of them the same; ``between``: how far the postures are apart."""
 
     def differs(n: int, kept: list[int]) -> bool:
         (i, j), (first, last) = pairs[n], pairs[kept].T
@@ -204,5 +204,5 @@ def keep_different(order: Iterable[int], differs: Callable[[int, list[int]], boo
 
 
 def further(between: Array, same: float) -> Callable[[int, list[int]], bool]:
-    """Return whether one is further than ``same`` from all others, by how far each two are apart, (B, B)."""
+    """Return the test whether one is further than ``same`` from all others; ``between`` (B, B): distances."""
     return lambda n, others: bool((between[n, others] > same).all())

@@ -1,4 +1,4 @@
-"""Many starts of one problem, one after the other or several at a time, and those that come of their results."""
+"""Many starts of one problem, one after the other or several at a time, and starts that their results suggest."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def follow_up(
     deadline: Deadline,
     problem: Problem,
 ) -> Iterator[tuple[InitialGuess, SolverResult]]:
-    """Solve from the starts that come of others' results, and yield each with its result.
+    """Solve from starts that the results of others suggest; yield each with its result.
 
     First from the best moves of all agents together, then from the best optimum with those joints turned back that
     press against a limit. The best optimum so far is the incumbent.

@@ -31,7 +31,7 @@ def each_once(candidates: Sequence[Candidate]) -> list[Candidate]:
 
 
 def indistinguishable(candidates: Sequence[Candidate], best: Candidate, accuracy: Accuracy) -> list[Candidate]:
-    """Return the candidates on one mesh that it cannot tell from the best one, this first, each optimum once.
+    """Return the optima that their mesh cannot tell from the best one, the best first, each once.
 
     Their objectives are within the estimated error of the best one's; where there is no estimate, all are.
     """

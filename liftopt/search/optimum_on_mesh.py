@@ -1,4 +1,4 @@
-"""One optimum continued on another mesh: the same motion, solved again from there with its multipliers."""
+"""One optimum continued on another mesh: the solver starts from the same motion and its multipliers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def optimum_on_mesh(
     on_solve: Callable[[str, SolverResult], None] | None = None,
     without_multipliers: bool = False,
 ) -> Candidate | None:
-    """Return the optimum that another one leads to on another mesh; None if no solver converges in time.
+    """Return the optimum on another mesh that a candidate leads to; None if no solver converges in time.
 
     Args:
         cache: where solvers come from.

@@ -1,4 +1,4 @@
-"""What one search shares among its stages: what is asked, what outlives a lift, the clock, and what is to be told."""
+"""What the stages of one search share: the scenario, problems and solvers, the clock, and what is to be told."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Session:
 
     @property
     def deadline(self) -> Deadline:
-        """Past which no more is tried; later for what was found already, see ``finish``."""
+        """Past which no more is tried; after ``finish`` a later one, for what was found already."""
         return self.limit.share(FINISHING_SHARE if self._finishing else TRYING_SHARE)
 
     def problem(self, spline: RestToRestSpline) -> Problem:
@@ -84,23 +84,23 @@ class Session:
         return [self.solver(problem, options.name, i) for i in range(count)]
 
     def progress(self, line: str) -> None:
-        """Tell what comes next, and note whether time was over before."""
+        """Tell what is done next, and note if time was over before it began."""
         self.note_time()
         self._stage = line
         self._tell(line)
 
     def note_time(self) -> None:
-        """Note what was being done when time was over, if it is."""
+        """If time is over, note what was being done; once."""
         if not self.cut and self.deadline.passed:
             self.cut = CUT.format(limit=self.scenario.solver.time_limit, what=CUT_SHORT, stage=self._stage)
             self.notes.append(self.cut)
 
     def begin_solving(self) -> None:
-        """Count what came before as preparation."""
+        """End the preparation: what comes now is solving."""
         self._prepared = time.monotonic()
 
     def finish(self) -> None:
-        """Let the time that was kept for it be used for what was found."""
+        """Go on to finish what was found: the time that was kept for it may be used now."""
         self.note_time()
         self._finishing = True
 

@@ -1,10 +1,13 @@
 """The main job, a scenario in and a verified optimal lift out, told on one page.
 
-Postures at both ends of the lift give starts. Many of them are tried on a coarse mesh, and the best optima are varied
-(``coarse_search``). The best of these are taken to the mesh that was asked for (``refine_mesh``). Where that leads to
-nothing, a few starts are solved on that mesh itself (``solve_starts``), then many more on the coarse one. What verifies
-is refined until it is as accurate as asked for (``refine_to_tolerance``); what does not is told with the reasons and
-with changes of the scenario that would help (``suggest_changes``).
+1. Postures at both ends of the lift give initial guesses (``initial_guesses``).
+2. Many of them are solved on a coarse mesh, and the best optima are varied (``coarse_search``).
+3. The best of these are taken to the mesh that was asked for and verified there (``refine_mesh``).
+4. If nothing is verified, a few guesses are solved on that mesh itself (``solve_starts``), then many more on the coarse
+   one (``search_wider``).
+5. A verified lift is refined until it is as accurate as asked for (``refine_to_tolerance``).
+6. If there is none, the solution carries the reasons, and changes of the scenario that would help
+   (``suggest_changes``).
 """
 
 from __future__ import annotations
@@ -57,12 +60,12 @@ def solve(
 
 
 def find_lift(session: Session) -> Found:
-    """Return the best verified candidate, on a mesh as fine as it takes, or the best iterate and why it is none."""
+    """Return the best verified lift, on a mesh as fine as it takes, or the best iterate and why it is no lift."""
     return refine_to_tolerance(session, refine_until_verified(session, search(session)))
 
 
 def search(session: Session) -> Found:
-    """Return the best candidate on the scenario's own mesh, or the best iterate and why it is none."""
+    """Return the best lift on the scenario's own mesh, or the best iterate and why it is no lift."""
     spline, problem, options = session.spline, session.problem(session.spline), session.scenario.solver
     tries = max(options.starts, options.tries) if options.tries else 0
     guesses = _guesses(session, problem, tries or options.starts, options.seed, tries)
@@ -87,9 +90,9 @@ def search(session: Session) -> Found:
 
 
 def search_wider(session: Session) -> Found | None:
-    """Return the best candidate of many more starts; None if none is found.
+    """Return the best lift that many more starts lead to; None if they lead to none.
 
-    That a lift is not possible has no proof where postures hold the object at both ends.
+    Where postures hold the object at both ends, that no start has led to a lift does not prove that there is none.
     """
     tries, seed = WIDER * session.scenario.solver.tries, session.scenario.solver.seed + 1
     if not tries or session.deadline.passed:
@@ -100,20 +103,20 @@ def search_wider(session: Session) -> Found | None:
 
 
 def _guesses(session: Session, problem: Problem, most: int, seed: int, tries: int) -> InitialGuessSet | None:
-    """Return what postures at both ends allow, with enough of them for so many tries on a coarse mesh."""
+    """Return initial guesses from postures at both ends, enough of them for so many tries on a coarse mesh."""
     postures = session.postures
     return initial_guesses(problem, most, seed, session.deadline, session.progress, postures, SEEDS_A_TRY * tries)
 
 
 def explain(session: Session, found: Found) -> Solution:
-    """Return the best iterate with what is in the way and which changes would help."""
+    """Return the best iterate as a solution, with the reasons why it is no lift and changes that would help."""
     session.progress(found.best.outcome)
     changes = suggest_changes(session, found)
     return replace(solution_of(session, found), reasons=found.reasons, suggested_changes=changes)
 
 
 def solution_of(session: Session, found: Found) -> Solution:
-    """Return the solution that the best candidate stands for, verified, with all that the session has to tell."""
+    """Return the best candidate as a solution, with the records, notes and times of its session."""
     best = found.best
     best.verification  # noqa: B018  (its time belongs to the total)
     session.note_time()

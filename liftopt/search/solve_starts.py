@@ -1,7 +1,7 @@
 """Starts solved on the mesh that was asked for, until one is verified or it is known why none is.
 
-Where none is verified, the motion that breaks least is found: it is another start where it breaks nothing, and tells
-what is in the way where it does. IPOPT takes over where the scenario's own solver finds nothing.
+If none is verified, the elastic mode finds the motion that breaks least. If it breaks nothing, it is one more start. If
+it does, it says why there is no lift. If it cannot tell either, IPOPT takes over from the scenario's own solver.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Tried = list[tuple[InitialGuess, SolverResult]]
 
 
 def solve_starts(session: Session, spline: RestToRestSpline, starts: Sequence[InitialGuess]) -> Found:
-    """Return the best verified candidate that the starts lead to, or the best iterate and why it is none.
+    """Return the best verified lift that the starts lead to, or the best iterate and why it is no lift.
 
     Args:
         session: hears of every solve.
@@ -68,7 +68,7 @@ def _solved(
 
 
 def _pick(session: Session, problem: Problem, spline: RestToRestSpline, tried: Tried) -> Found:
-    """Verify the best first; return the first that holds, or the one that is violated least."""
+    """Verify candidates, the best first; return the first that is a lift, or the one that violates its limits least."""
     session.progress("verifying with Pinocchio")
     candidates = [Candidate(session.scenario, problem, spline, start.name, result) for start, result in tried]
     candidates.sort(key=lambda candidate: (not candidate.result.converged, candidate.result.objective))

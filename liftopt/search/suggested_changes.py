@@ -1,8 +1,8 @@
 """What would make a lift possible: the smallest change of one value of the scenario, found by solving with it.
 
-Each change is enlarged until a lift is found, and then bisected towards the scenario as it was, each solve from the
-last that worked. What is reported was solved and verified with that very value: there is a lift; that there is none
-with less is not proven.
+Each change grows until a lift is found. Then it is bisected towards the scenario as it was; each solve starts from the
+last that worked. What is reported was solved and verified with that very value. That a smaller change does not help is
+not proven.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ FINEST_CHANGED = 160  # intervals of the finest mesh of a changed scenario
 
 
 def suggest_changes(session: Session, found: Found, work: float = WORK) -> tuple[SuggestedChange, ...]:
-    """Return verified changes of a scenario that no solution was found for, the smallest change first.
+    """Return changes that make a scenario solvable, each solved and verified, the smallest first.
 
     Args:
         session: past whose deadline no more is tried.
@@ -107,7 +107,7 @@ class _Trials:
         return self.left > rest and not self.session.deadline.passed
 
     def solve(self, adjustable: Adjustable, steps: int, near: Candidate | None = None) -> Candidate | None:
-        """Return a converged candidate of the changed scenario, from that of a near one if there is one, or None."""
+        """Return a converged candidate of the changed scenario, or None; ``near`` is that of a similar change."""
         scenario = adjustable.changed(self.scenario, steps)
         if scenario is None:
             return None

@@ -57,7 +57,7 @@ def vary(
     deadline: Deadline,
     most: float = np.inf,
 ) -> Iterator[tuple[InitialGuess, SolverResult]]:
-    """Solve from variations of optima and of what comes of them; yield each with its result.
+    """Solve from variations of optima, and of the optima that they lead to; yield each with its result.
 
     Args:
         solvers: for the problem, one for each thread.

@@ -53,7 +53,7 @@ def low_cost_postures(
 def via_postures(
     problem: Problem, kinematics: InverseKinematics, x: Array, by: list[Posture], deadline: Deadline
 ) -> list[InitialGuess]:
-    """Return a motion changed so that one agent takes the object by way of a posture of its own and the others follow.
+    """Return motions in which one agent takes the object by way of a posture, and the others follow.
 
     Args:
         problem: the lift.

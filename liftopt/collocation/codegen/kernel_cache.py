@@ -1,9 +1,9 @@
 """The kernel cache: compiled kernels, inside the package as it was installed, or in the user's cache folder.
 
-A library is found by its key, a digest of all that it is made from. It carries the digest of its own bytes, appears by
-renaming, whole or not at all, and is looked at only where nobody but its owner can write: the user's own cache, and
-the package itself, whose folder is trusted as far as its code is. The package comes first; what was installed with it
-needs no folder of the user's.
+A kernel is found by its key, a digest of all that it is made from. Its file carries the checksum of its own bytes and
+appears by renaming, whole or not at all. It is loaded only from where nobody but its owner can write: the user's own
+cache, and the package itself, whose folder is trusted as far as its code is. The package comes first; what was
+installed with it needs no folder of the user's.
 
 Between the look and the loading nobody else can put another file in its place: a cache folder is held open, and its
 files are reached through it rather than by its path, which may lead through folders where others can rename things.
@@ -150,7 +150,7 @@ def _publish(built: Path, target: Path) -> Path:
 
 
 def _drop_unused(folder: Path) -> None:
-    """Remove the libraries in a cache folder that no run has loaded for long; other files are nobody's business."""
+    """Remove the libraries in a cache folder that no run has loaded for long; other files stay."""
     before = time.time() - 86400.0 * UNUSED_DAYS
     with suppress(OSError):
         for path in folder.iterdir():
