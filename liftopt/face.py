@@ -73,9 +73,9 @@ def solve(scenario: Scenario, *, progress: Callable[[str], None] | None = None) 
         InputError: a value of the scenario cannot be used.
         SolverError: the solver cannot run at all.
     """
-    from liftopt.search.solve import lift
+    from liftopt.search import solve as search
 
-    return Solution.of(lift(scenario, progress=progress))
+    return Solution.of(search.solve(scenario, progress=progress))
 
 
 def load(path: str | Path) -> Solution:

@@ -46,14 +46,17 @@ def scenario_tables() -> Any:
 @pytest.fixture(scope="session")
 def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
     """Return a function that solves a shipped scenario with overrides, each once a session."""
-    from liftopt.search.solve import lift
+    from liftopt.search.solve import solve
+    from liftopt.storage.writer import save
 
     @cache
-    def solve(name: str, *overrides: str) -> Solved:
+    def solve_once(name: str, *overrides: str) -> Solved:
         folder = tmp_path_factory.mktemp("result")
-        return Solved(lift(load_scenario(name, overrides), out=folder), folder)
+        solution = solve(load_scenario(name, overrides))
+        save(solution, folder)
+        return Solved(solution, folder)
 
-    return solve
+    return solve_once
 
 
 def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:

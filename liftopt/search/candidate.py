@@ -31,7 +31,7 @@ class Candidate:
         spline: its space of motions.
         start: name of where the solver started.
         result: where it stopped.
-        obstacles: why there cannot be a solution, one line; empty if nothing is known to be in the way.
+        infeasible: why there cannot be a solution, one line; empty if nothing is known to be in the way.
         origin: on another mesh, from which it was solved; None if it was not.
     """
 
@@ -40,7 +40,7 @@ class Candidate:
     spline: RestToRestSpline
     start: str
     result: SolverResult
-    obstacles: str = ""
+    infeasible: str = ""
     origin: Candidate | None = None
 
     @cached_property
@@ -51,8 +51,8 @@ class Candidate:
     @cached_property
     def outcome(self) -> str:
         """``"solved"`` as far as the solver knows, or why not, in one line."""
-        if self.obstacles:
-            return f"infeasible: {self.obstacles}"
+        if self.infeasible:
+            return f"infeasible: {self.infeasible}"
         if self.result.converged:
             return SOLVED
         late, limit = self.result.status == STOPPED, self.scenario.solver.time_limit
@@ -70,6 +70,11 @@ class Candidate:
         return self.outcome == SOLVED and [c.name for c in self.verification.checks if not c.passed] == [
             "closure between knots"
         ]
+
+    @property
+    def usable(self) -> bool:
+        """Whether it is solved, or would be on a finer mesh."""
+        return self.solved or self.refinable
 
     def at(self, time: Array) -> Motion:
         """Return what everybody does at ``time`` (K,) [s], by Pinocchio: q, v, a, torques, grasp forces, the object.

@@ -14,7 +14,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Verification
 from liftopt.solution.finding import Assessment
-from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
+from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 
 Array = npt.NDArray[np.float64]
 SOLVED = "solved"
@@ -83,7 +83,7 @@ class Solution:
     verification: Verification
     notes: tuple[str, ...] = ()
     accuracy: Accuracy | None = None
-    reasons: tuple[Obstacle, ...] = ()
+    reasons: tuple[InfeasibilityReason, ...] = ()
     suggested_changes: tuple[SuggestedChange, ...] = ()
     assessment: Assessment = field(default_factory=Assessment)
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Check
 from liftopt.solution.finding import SUBJECTS, Assessment, Finding
-from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
+from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 from liftopt.solution.solution import Solution, StartRecord
 
 T = TypeVar("T")
@@ -31,7 +31,7 @@ class Record:
     kkt_tolerance: float
     notes: tuple[str, ...]
     accuracy: Accuracy | None
-    reasons: tuple[Obstacle, ...]
+    reasons: tuple[InfeasibilityReason, ...]
     suggested_changes: tuple[SuggestedChange, ...]
 
 
@@ -84,7 +84,7 @@ def read_record(text: str, agents: Sequence[str]) -> Record:
         kkt_tolerance=_of("kkt_tolerance", read["kkt_tolerance"], float),
         notes=tuple(_of("notes", note, str) for note in _of("notes", read["notes"], list)),
         accuracy=None if accuracy is None else _entry(Accuracy, accuracy),
-        reasons=_entries(Obstacle, read.get("reasons", [])),
+        reasons=_entries(InfeasibilityReason, read.get("reasons", [])),
         suggested_changes=_entries(SuggestedChange, read.get("remedies", [])),
     )
     if not found.checks:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from liftopt.errors import InputError, LiftoptError
-from liftopt.files.checksum import sealed
+from liftopt.files.checksum import with_checksum
 from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 from liftopt.storage.dataset import NamedArrays, label_attributes, named_arrays
@@ -30,7 +30,7 @@ def save(solution: Solution, out: Path) -> Path:
     Raises:
         InputError: the folder or a file cannot be written.
     """
-    content = sealed(netcdf_bytes(named_arrays(solution)))
+    content = with_checksum(netcdf_bytes(named_arrays(solution)))
     beside = {SCENARIO: solution.scenario.to_toml().encode()}
     beside |= {
         f"{MODELS}/{file}": solution.urdfs[name].encode() for name, file in urdf_files(solution.scenario).items()

@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from liftopt.commands.cli import main
-from liftopt.files.checksum import DIGEST_BYTES, sealed
+from liftopt.files.checksum import DIGEST_BYTES, with_checksum
 
 PATIENCE = 60  # seconds for one command, only so that a hang fails
 Change = Callable[[h5py.File], object]
@@ -41,7 +41,7 @@ def rewritten() -> Callable[..., None]:
         with h5py.File(path, "r+") as file:
             change(file)
         if seal:
-            path.write_bytes(sealed(path.read_bytes()))
+            path.write_bytes(with_checksum(path.read_bytes()))
 
     return rewrite
 
