@@ -52,7 +52,7 @@ def chain_agent(seed: int, name: str = "arm") -> Agent:
         -2.0 * np.ones(n), 2.5 * np.ones(n), 3.0 * np.ones(n), -np.arange(60.0, 100.0, 10.0), 80.0 * np.ones(n)
     )
     workspace = HalfSpace(np.array([0.6, 0.0, 0.8]), -5.0)
-    return Agent(name, "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), workspace)
+    return Agent(name, "robot", "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), workspace)
 
 
 def box(grasps: np.ndarray, mass: float = 3.0) -> LiftedObject:

@@ -41,7 +41,7 @@ def swinging_arm() -> Agent:
         model.appendBodyToJoint(parent, body, pin.SE3.Identity())
     model.addFrame(pin.Frame("tip", parent, 0, pin.SE3(np.eye(3), np.array([0.0, 0.1, 0.3])), pin.FrameType.OP_FRAME))
     ones = np.ones(3)
-    return Agent("swing", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
+    return Agent("swing", "robot", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
 
 
 AGENTS = {

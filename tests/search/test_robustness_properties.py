@@ -159,7 +159,7 @@ def chains(draw: st.DrawFn) -> Agent:
     text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes={}, grasp="random_grasp"))
     ones = np.ones(len(rows))
     limits = JointLimits(-3.0 * ones, 3.0 * ones, 10.0 * ones, -100.0 * ones, 100.0 * ones)
-    return Agent("random", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
+    return Agent("random", "robot", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
 
 
 @settings(SLOW, max_examples=60)

@@ -116,4 +116,4 @@ def _agent(scaled: ScaledSubject) -> Agent:
     # Shapes are the subject's own: they are only looked at.
     shapes = placed_shapes(human_chain(scaled.subject), scaled.subject)
     text = chain_urdf(measured_chain(scaled), joint_bounds(rows, limits), shapes)
-    return Agent(NAME, text, load_model(text), (), GRASP, limits, np.zeros(len(rows)))
+    return Agent(NAME, "person", text, load_model(text), (), GRASP, limits, np.zeros(len(rows)))

@@ -96,6 +96,7 @@ def human_agent(subject: Subject, urdf: str | None = None) -> Agent:
     limits, text = human_limits(subject.sex), urdf or human_urdf(subject)
     return Agent(
         name=NAME,
+        kind="person",
         urdf=text,
         model=load_model(text),
         locked_joints=tuple(joint_name(NAME, row) for row in VIRTUAL),

@@ -109,6 +109,7 @@ def sawyer_agent(
     text = urdf or _urdf(standing_distance, base_height, tool_length, tool_mass)
     return Agent(
         name=NAME,
+        kind="robot",
         urdf=text,
         model=load_model(text),
         locked_joints=tuple(joint_name(NAME, row) for row in VIRTUAL),
