@@ -29,6 +29,8 @@ from liftopt.scenario.settings import Limits, Objective, Refine, Solver
 from liftopt.scenario.task import Lift
 
 SCHEMA = 2
+REQUIRED = ("schema", "duration", "agents", "object", "task")  # in a file
+VERSION = "must be 2 (version of the scenario format)"
 NAMES = "1 to 64 letters, digits, spaces or _ . + -, a letter or a digit first"
 
 
@@ -156,14 +158,10 @@ def _schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _scenario(tables: Mapping[str, Any]) -> Scenario:
-    for key in ("schema", "duration"):
-        if key not in tables:
-            what = {"schema": "must be 2 (version of the scenario format)"}.get(key) or _required(key)
-            raise InputError(key, NO_VALUE, f"is missing; {what}")
+    if "schema" not in tables:
+        raise InputError("schema", NO_VALUE, f"is missing; {VERSION}")
     if tables["schema"] != SCHEMA:  # by a change
-        raise InputError("schema", tables["schema"], "must be 2 (version of the scenario format)")
+        raise InputError("schema", tables["schema"], VERSION)
+    if "duration" not in tables:  # in Python it has a default
+        raise refusal_at(Scenario, ("duration",), "missing", None)
     return Scenario(**{key: value for key, value in tables.items() if key != "schema"})
-
-
-def _required(key: str) -> str:
-    return str(refusal_at(Scenario, (key,), "missing", None)).partition("; ")[2]
