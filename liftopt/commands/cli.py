@@ -39,9 +39,9 @@ from liftopt.storage.result_folder import in_the_way
 from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
-SCENARIO_HELP = """keys of a scenario, for --set, with what is allowed and the default. An agent is addressed by the name that the
-scenario gives it, here human and robot; in a TOML file its keys stand in [agents.human] and [agents.robot], and
-schema = 2 before all. table.* is object.*:
+SCENARIO_HELP = """keys of a scenario, for --set, with what is allowed and the default. An agent is addressed by the
+name that the scenario gives it, here human and robot; in a TOML file its keys stand in [agents.human] and
+[agents.robot], and schema = 2 before all. table.* is object.*:
 """
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
 
@@ -197,10 +197,10 @@ def _solve(args: argparse.Namespace) -> int:
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), _progress() as progress:
         with _no_collection():
-            from liftopt.search.solve import lift
+            from liftopt.search.solve import solve
             from liftopt.storage.writer import save
 
-        solution = lift(scenario, progress=progress)
+        solution = solve(scenario, progress=progress)
         progress("writing the result")
         folder = save(solution, out)
     from liftopt.commands.solved_text import solved_text
