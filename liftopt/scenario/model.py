@@ -18,7 +18,7 @@ from liftopt.files.section import first_fault, refusal_at
 from liftopt.scenario.checks import check
 from liftopt.scenario.fields import ScenarioFields, safe_name
 from liftopt.scenario.file import read_tables
-from liftopt.scenario.keys import Changes, changes_in, path_of, set_entry, value_at
+from liftopt.scenario.keys import Changes, changes_in, leaves, path_of, set_entry, value_at
 from liftopt.scenario.listing import describe
 from liftopt.scenario.refusals import refusal
 from liftopt.scenario.schema1 import as_schema_2
@@ -52,6 +52,10 @@ class Scenario(ScenarioFields):
             InputError: the scenario has no such key.
         """
         return value_at(self, path_of(key, self.agents, self.object.name))
+
+    def entries(self) -> dict[str, Any]:
+        """Return every value as a file has it by its dotted key, all defaults filled in."""
+        return dict(leaves(self.to_dict()))
 
     def replace(self, changes: Mapping[str, Any]) -> Scenario:
         """Return the scenario with some entries changed; this one stays as it is.
