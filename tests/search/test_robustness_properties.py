@@ -144,7 +144,7 @@ def test_the_ground_bears_any_agent_by_newtons_and_eulers_laws(agent: Agent, see
     moment = found.ground_moment[0] + np.cross(base - com, by_ground)
     moment += np.cross(found.grasp_position[0] - com, by_object)
     np.testing.assert_allclose(moment / scale, data.dhg.angular / scale, atol=1e-12)
-    check_urdf(agent.urdf)
+    check_urdf(agent.urdf)  # raises where it is none of liftopt's
 
 
 @settings(SLOW, max_examples=60)
