@@ -105,7 +105,7 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
     import numpy as np
 
     from liftopt.solution.checks import FINER
-    from liftopt.solution.summary import limit_share
+    from liftopt.multibody.trajectory import limit_share
 
     times = np.linspace(0.0, point.candidate.problem.task.duration, FINER * point.candidate.spline.intervals + 1)
     human, robot = (float(limit_share(agent).max()) for agent in point.candidate.at(times).agents)

@@ -26,7 +26,8 @@ from liftopt.scenario.model import Scenario, scenario_to_dict, with_overrides
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
-from liftopt.solution.summary import limit_share, shares
+from liftopt.multibody.trajectory import limit_share
+from liftopt.solution.grasp_loads import shares
 
 Array = npt.NDArray[np.float64]
 # Of central differences of the problem itself, times the value: their error is its square.

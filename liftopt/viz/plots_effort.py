@@ -19,7 +19,7 @@ ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon")
 def strength_used(lift: Lift) -> Figure:
     """Return a map of the share of strength by joint and time, darker for more."""
     solution = lift.dense
-    uses = strength_use(solution)
+    uses = strength_use(solution, solution.persons[0])
     share = 100 * np.stack([use.share for use in uses])
     figure, grid = panels(1, height=2.9, left=2.15, right=1.2)
     axes = grid[0][0]
@@ -46,7 +46,7 @@ def strength_used(lift: Lift) -> Figure:
 def posture_score(lift: Lift) -> Figure:
     """Return the grand score of RULA over time, and the scores it is made of."""
     solution = lift.dense
-    scores, time = rula(posture_of(solution)), percent(solution.time)
+    scores, time = rula(posture_of(solution, solution.persons[0])), percent(solution.time)
     figure, grid = panels(2, height=1.5)
     grand, parts = (line[0] for line in grid)
     low = 0.5

@@ -57,7 +57,7 @@ def write_report(solution: Solution, file: Path, experiment: Experiment | None =
 def report_html(solution: Solution, experiment: Experiment | None = None) -> str:
     """Return the report as one HTML page that needs nothing else; with what was recorded, if it was."""
     lift = Lift.of(solution)
-    dense, ergonomics = lift.dense, ergonomics_of(lift.dense)
+    dense, ergonomics = lift.dense, ergonomics_of(lift.dense, lift.dense.persons[0])
     human = human_curves(dense.agents[0])
     robot = robot_curves(dense.agents[1], solution.scenario.robot.model)
     summary = summary_dict(solution)

@@ -19,7 +19,7 @@ from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 from liftopt.multibody.person.subject import Subject
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
-from liftopt.solution.summary import GRAVITY
+from liftopt.multibody.trajectory import GRAVITY
 
 Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")

@@ -21,7 +21,7 @@ from liftopt.scenario.model import Scenario, load_scenario, scenario_to_toml
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.solve import lift
-from liftopt.solution.summary import limit_share
+from liftopt.multibody.trajectory import limit_share
 from liftopt.studies.sensitivity import PARAMETERS, Parameter, Study, changed, figures, study
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
