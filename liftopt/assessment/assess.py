@@ -70,7 +70,8 @@ def _verdict(who: Who, findings: Sequence[Finding]) -> Finding:
 
 def _clearance(fine: Solution) -> Finding:
     people, robots = _counted(len(fine.persons), "person", "people"), _counted(len(fine.robots), "robot", "robots")
-    text = f"Not checked: clearance. {listed([*people, *robots, 'object']).capitalize()} may touch or overlap on the way"
+    who = listed([*people, *robots, "object"]).capitalize()
+    text = f"Not checked: clearance. {who} may touch or overlap on the way"
     if people and robots:
         text += f"; contact between {robots[0]} and {people[0]} (ISO/TS 15066) is not assessed"
     return Finding("clearance.not_checked", INFO, "not checked: clearance", f"{text}.")

@@ -10,8 +10,8 @@ from liftopt.assessment.joints import ALL_ALONG, AT_LIMIT
 from liftopt.assessment.who import Who, listed
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
-from liftopt.solution.solution import Solution
 from liftopt.solution.grasp_loads import shares, squeeze
+from liftopt.solution.solution import Solution
 
 
 def cap_findings(fine: Solution, agent: AgentTrajectory, who: Who) -> Iterator[Finding]:
@@ -45,7 +45,7 @@ def squeeze_finding(fine: Solution, person: AgentTrajectory) -> Finding:
     More than the object weighs is a warning.
     """
     squeezed = squeeze(fine.agents, person.name)
-    k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.table.mass * GRAVITY
+    k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.object.mass * GRAVITY
     peak, name = abs(float(squeezed[k])), fine.object.name
     verb = f"press the {name} together" if squeezed[k] > 0 else f"pull the {name} apart"
     than = f"{'' if peak > weight else 'not '}more than its weight of {weight:.0f} N"
@@ -81,7 +81,7 @@ def share_finding(fine: Solution, person: AgentTrajectory, who: Who) -> Finding:
         return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
     k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
     up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
-    down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.table.mass * GRAVITY
+    down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.object.mass * GRAVITY
     name, against = fine.object.name, down > AT_LIMIT * weight
     lift = "the other lifts" if len(fine.agents) == 2 else "others lift"
     pressed = f"; one of them presses the {name} down with up to {down:.0f} N while {lift}" if against else ""

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
 from liftopt.assessment.who import Who
+from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
 from liftopt.ergonomics.rula import ACTION
 from liftopt.multibody.joint_meanings import HUMAN_JOINTS
@@ -14,7 +15,6 @@ from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
 from liftopt.multibody.person.strength import STRENGTHS
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.build import subject_of
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
 
@@ -84,16 +84,15 @@ def _for(who: Who) -> str:
 
 
 def _data(fine: Solution, who: Who) -> Finding:
-    subject = subject_of(fine.scenario.human)
-    strengths = [item for item in subject_quantities(subject) if item.group == "strength"]
+    strengths = [item for item in subject_quantities(subject_in(fine, who.name)) if item.group == "strength"]
     weak = [item for item in strengths if item.source.confidence in UNSURE]
     part = f"{len(weak)} of {len(strengths)} strength limits"
     return Finding(
         f"{PERSON}.strength_data",
         INFO,
         f"{part} not checked at their source",
-        f"{part}{who.of} could not be checked at their source. They are typical values of the 50th percentile, not of one "
-        "person; every share of strength inherits that.",
+        f"{part}{who.of} could not be checked at their source. They are typical values of the 50th percentile, not of "
+        "one person; every share of strength inherits that.",
         who.name,
         value=float(len(weak)),
         source="; ".join(dict.fromkeys(item.source.told for item in weak)),

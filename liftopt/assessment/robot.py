@@ -14,6 +14,7 @@ from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.robots import sawyer_description
 from liftopt.multibody.sources import Source
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
+from liftopt.scenario.agents import Robot
 from liftopt.solution.finding import CAUTION, INFO, ROBOT, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
 
@@ -33,15 +34,14 @@ class RobotData:
 
 
 # By the model of the scenario.
-DATA = {
-    "sawyer": RobotData(sawyer_description.PAYLOAD, sawyer_description.PAYLOAD_SOURCE, sawyer_description.SOURCE)
-}
+DATA = {"sawyer": RobotData(sawyer_description.PAYLOAD, sawyer_description.PAYLOAD_SOURCE, sawyer_description.SOURCE)}
 
 
 def robot_findings(fine: Solution, robot: AgentTrajectory, who: Who) -> Iterator[Finding]:
     """Give what is to be said of a robot in a solution between its knots too; ``who`` is how it is told."""
-    asked = fine.scenario.robot
-    data, meanings = DATA.get(asked.model), joint_meanings(robot.kind, asked.model)
+    asked = fine.scenario.agents[robot.name]
+    assert isinstance(asked, Robot)
+    data, meanings = DATA.get(asked.model), joint_meanings(asked.kind, asked.model)
     yield _payload(fine, robot, who, asked.tool.mass, data)
     source = "limits of the robot's URDF" if data is None else data.limits_source.told
     yield from joint_findings(fine, robot, Words(who, "torque", "torque limit", source, meanings=meanings))

@@ -9,7 +9,9 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from liftopt.assessment.who import listed
+from liftopt.scenario.agents import Person
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import lead, partner
 from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -58,7 +60,9 @@ def details_text(assessment: Assessment) -> str:
 
 def _headline(assessment: Assessment) -> str:
     judged = [verdict for verdict in assessment.verdicts if verdict.subject != MATHEMATICS]
-    told = [f"{WORDS[verdict.severity]} for the {_told(verdict, judged)}" for verdict in judged if verdict.severity != INFO]
+    told = [
+        f"{WORDS[verdict.severity]} for the {_told(verdict, judged)}" for verdict in judged if verdict.severity != INFO
+    ]
     subjects = sorted(verdict.subject for verdict in judged)
     return ", ".join(told) or f"{'person and robot' if subjects == [PERSON, ROBOT] else 'everybody'} within limits"
 
@@ -70,13 +74,26 @@ def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
 
 
 def _scenario(scenario: Scenario) -> list[str]:
-    table, task = scenario.table, scenario.task
-    people = [("human", scenario.human)]
+    box, task = scenario.object, scenario.task
     return _wrapped(
-        f"{listed(_described(scenario))} lift {table.mass:g} kg ({table.depth:g} "
-        f"x {table.width:g} x {table.height:g} m) from {task.start.height:g} to {task.end.height:g} m (height of the "
-        f"edges they hold) in {scenario.duration:g} s, standing {task.standing_distance:g} m apart"
+        f"{listed(_described(scenario))} lift {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) from "
+        f"{task.start.height:g} to {task.end.height:g} m (height of the edges they hold) in {scenario.duration:g} s, "
+        f"{_apart(scenario)}standing {task.standing_distance:g} m apart"
     )
+
+
+def _described(scenario: Scenario) -> Iterator[str]:
+    """Give everybody who lifts in a few words, by name where there are several of the kind."""
+    kinds = [agent.kind for agent in scenario.agents.values()]
+    for name, agent in scenario.agents.items():
+        what = f"{agent.sex} {agent.stature:g} m, {agent.mass:g} kg" if isinstance(agent, Person) else agent.model
+        yield what if kinds.count(agent.kind) == 1 else f"{name} ({what})"
+
+
+def _apart(scenario: Scenario) -> str:
+    """Return whose distance is told, where more than two lift."""
+    other = partner(scenario)
+    return f"{lead(scenario)} and {other} " if len(scenario.agents) > 2 else ""
 
 
 def _verdicts(assessment: Assessment, told: Callable[[Finding], list[str]]) -> Iterator[Part]:

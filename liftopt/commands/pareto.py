@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from liftopt.commands.terminal import telling
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
-from liftopt.scenario.model import load_scenario, scenario_to_dict
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def pareto(args: argparse.Namespace, progress: Callable[[str], None] | None = No
         InputError: the scenario or an option is wrong, or a file cannot be written.
         LiftoptError: there is no verified solution at all.
     """
-    scenario, out = load_scenario(args.scenario, args.overrides), Path(args.out)
+    scenario, out = scenario_or_solved(args.scenario, args.overrides), Path(args.out)
     there = next(folder for folder in (out, *out.absolute().parents) if os.path.exists(folder))
     if not there.is_dir():  # said before many solves, not after them
         raise InputError("--out", args.out, f"cannot be written: {there} is no folder")
@@ -94,7 +94,7 @@ def front_dict(front: Front) -> dict[str, Any]:
     """Return a front ready for JSON: dominated points are among the others, marked."""
     every = sorted((*front.points, *front.dominated), key=lambda point: point.weights)
     return {
-        "scenario": scenario_to_dict(front.scenario),
+        "scenario": front.scenario.to_dict(),
         "points": [_row(point, point in front.dominated) for point in every],
         "missing_weights": [list(weights) for weights in front.missing],
     }
@@ -104,8 +104,8 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
     """Return figures of a point, units in the names."""
     import numpy as np
 
-    from liftopt.solution.checks import FINER
     from liftopt.multibody.trajectory import limit_share
+    from liftopt.solution.checks import FINER
 
     times = np.linspace(0.0, point.candidate.problem.task.duration, FINER * point.candidate.spline.intervals + 1)
     human, robot = (float(limit_share(agent).max()) for agent in point.candidate.at(times).agents)

@@ -14,9 +14,9 @@ from liftopt.commands.exit_status import DONE, NOT_SOLVED
 from liftopt.commands.terminal import progress_line, write, write_error
 from liftopt.errors import InputError
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import Scenario, load_scenario
-from liftopt.scenario.schema import describe
+from liftopt.scenario.model import load_scenario
 from liftopt.storage.result_folder import in_the_way
+from liftopt.storage.solved_scenario import scenario_or_solved
 
 
 def add_solve_parser(commands: Any) -> None:
@@ -43,7 +43,7 @@ def add_solve_parser(commands: Any) -> None:
         default=[],
         dest="overrides",
         metavar="KEY=VALUE",
-        help="change one entry of the scenario, for example table.mass=3; may be repeated",
+        help="change one entry of the scenario, for example object.mass=3; may be repeated",
     )
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument(
@@ -65,7 +65,7 @@ def solve(args: argparse.Namespace) -> int:
     Raises:
         LiftoptError: the scenario or an option is wrong, or the solver cannot run.
     """
-    scenario = load_scenario(args.scenario, args.overrides)
+    scenario = scenario_or_solved(args.scenario, args.overrides)
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), progress_line() as progress:
         with _no_collection():
@@ -87,7 +87,7 @@ def solve(args: argparse.Namespace) -> int:
 
 
 def _scenario_help() -> str:
-    lines = [f"  {key}\n      {what}" for key, what in describe(Scenario)]
+    lines = [f"  {key}\n      {what}" for key, what in load_scenario().describe()]
     return "keys of a scenario, for a TOML file and for --set:\n" + "\n".join(lines)
 
 

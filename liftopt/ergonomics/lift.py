@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.agent import Agent
-from liftopt.multibody.dh import ROTATION_WORLD_PAPER
+from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
-from liftopt.scenario.build import agents_of, subject_of
+from liftopt.scenario.agents import Person
+from liftopt.scenario.build import agent_of, subject_of
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import stand_of
 
 Array = npt.NDArray[np.float64]
 
@@ -43,38 +45,24 @@ class Lift(Protocol):
         """Those that help."""
 
 
-@dataclass(frozen=True)
-class Stance:
-    """Where a person stands, upright.
-
-    Attributes:
-        p_world_feet: (3,) between the ankles, on the floor [m].
-        heading: from the world's x axis to where the person faces, about the vertical [rad].
-    """
-
-    p_world_feet: Array
-    heading: float
-
-    @property
-    def R_world_person(self) -> Array:
-        """(3, 3) the person's axes in the world: forward, left, up."""
-        c, s = np.cos(self.heading), np.sin(self.heading)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def model_of(lift: Lift, name: str) -> Agent:
+    """Return the model that the trajectory of the person of that name was made with."""
+    return agent_of(lift.scenario, name, lift.urdfs)
 
 
-def model_of(lift: Lift, person: AgentTrajectory) -> Agent:
-    """Return the model that a person's trajectory was made with."""
-    return next(agent for agent in agents_of(lift.scenario, lift.urdfs) if agent.name == person.name)
+def subject_in(lift: Lift, name: str) -> Subject:
+    """Return the body of the person of that name."""
+    person = lift.scenario.agents[name]
+    assert isinstance(person, Person)
+    return subject_of(person)
 
 
-def subject_in(lift: Lift, person: AgentTrajectory) -> Subject:
-    """Return the body of a person."""
-    return subject_of(lift.scenario.human)
+def R_world_person(lift: Lift, name: str) -> Array:
+    """Return the (3, 3) axes of a person who stands upright: forward, left, up."""
+    return rotation_z(math.radians(stand_of(lift.scenario, name).yaw_deg))[:3, :3]
 
 
-def stance_of(agent: Agent) -> Stance:
-    """Return where a person stands, as the base of the model says."""
-    base = agent.model.frames[agent.model.getFrameId(f"{agent.name}_base")].placement
-    forward = base.rotation @ ROTATION_WORLD_PAPER.T[:, 0]
-    # The angles of a URDF are off by rounding; nobody stands turned by that.
-    return Stance(base.translation, round(float(np.arctan2(forward[1], forward[0])), 12))
+def p_world_feet(lift: Lift, name: str) -> Array:
+    """Return the point (3,) between a person's ankles, on the floor [m]."""
+    stand = stand_of(lift.scenario, name)
+    return np.array([stand.x, stand.y, 0.0])

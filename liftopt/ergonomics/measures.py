@@ -121,7 +121,7 @@ def _niosh(equation: Niosh) -> Measure:
 
 
 def _iso(lift: Lift) -> Measure:
-    mass, name = lift.scenario.table.mass, lift.object.name
+    mass, name = lift.scenario.object.mass, lift.object.name
     if mass < ISO_SMALLEST:
         reading = f"The standard starts at {ISO_SMALLEST:g} kg; the {name} has {mass:g} kg."
         return Measure("iso_11228_1", "ISO 11228-1", "out of scope", "not evaluated", reading, ISO_11228_1)
@@ -134,7 +134,7 @@ def _iso(lift: Lift) -> Measure:
 
 
 def _acgih(lift: Lift, person: AgentTrajectory, equation: Niosh) -> Measure:
-    subject = subject_in(lift, person)
+    subject = subject_in(lift, person.name)
     ends = [acgih_limit(subject, end.horizontal, end.vertical) for end in (equation.origin, equation.destination)]
     found = [limit for limit in ends if limit is not None]
     words = " and ".join("none known to be safe" if limit is None else f"{limit:g} kg" for limit in ends)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.ergonomics.lift import Array, Lift, Stance, model_of, stance_of
+from liftopt.ergonomics.lift import Array, Lift, R_world_person, p_world_feet
 from liftopt.multibody.sources import Source
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 
@@ -86,13 +86,13 @@ class Niosh:
 
 def niosh(lift: Lift, person: AgentTrajectory) -> Niosh:
     """Return the equation for a person's part of the lift."""
-    load, stance = person.grasp_force[:, 2] / GRAVITY, stance_of(model_of(lift, person))
-    ends = person.grasp_position[[0, -1]]
+    load, ends = person.grasp_force[:, 2] / GRAVITY, person.grasp_position[[0, -1]]
     travel = abs(float(ends[1, 2] - ends[0, 2])) * 100.0
     speed = np.linalg.norm(np.gradient(person.grasp_position, lift.time, axis=0), axis=1)
     mean = float(np.trapezoid(load, lift.time) / (lift.time[-1] - lift.time[0]))
     k = int(np.argmax(load))
-    origin, destination = (_at(point, stance, travel) for point in ends)
+    hands = (ends - p_world_feet(lift, person.name)) @ R_world_person(lift, person.name)
+    origin, destination = (_at(hand, travel) for hand in hands)
     return Niosh(mean, float(load[k]), float(lift.time[k]), origin, destination, float(speed.max()))
 
 
@@ -110,9 +110,9 @@ def niosh_terms(horizontal: float, vertical: float, travel: float, asymmetry: fl
     )
 
 
-def _at(p_world_hand: Array, stance: Stance, travel: float) -> NioshTerms:
-    """Return the equation for a hand (3,) [m] of a person who stands somewhere."""
-    x, y, z = (p_world_hand - stance.p_world_feet) @ stance.R_world_person
+def _at(hand: Array, travel: float) -> NioshTerms:
+    """Return the equation for a hand (3,) from between the ankles: ahead, to the left, up [m]."""
+    x, y, z = hand
     return niosh_terms(
         horizontal=100.0 * float(np.hypot(x, y)),
         vertical=100.0 * float(z),

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.ergonomics.lift import Lift, model_of, stance_of
+from liftopt.ergonomics.lift import Lift, R_world_person, model_of
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 
@@ -49,11 +49,9 @@ class Posture:
 
 def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
     """Return the posture of a person at every time of a lift."""
-    agent = model_of(lift, person)
-    q = {
-        name.removeprefix(f"{person.name}_"): np.degrees(person.q[:, i]) for i, name in enumerate(person.joint_names)
-    }
-    shoulder, elbow, wrist = _in_trunk(agent, person.q)
+    agent = model_of(lift, person.name)
+    q = {name.removeprefix(f"{person.name}_"): np.degrees(person.q[:, i]) for i, name in enumerate(person.joint_names)}
+    shoulder, elbow, wrist = _in_trunk(agent, R_world_person(lift, person.name), person.q)
     arm = (elbow - shoulder) / np.linalg.norm(elbow - shoulder, axis=1, keepdims=True)
     limits, names = agent.limits, agent.moving_joints
     middle = np.degrees((limits.q_lower + limits.q_upper) / 2)[names.index(f"{person.name}_Q8")]
@@ -73,14 +71,19 @@ def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
     )
 
 
-def _in_trunk(agent: Agent, q: Array) -> tuple[Array, Array, Array]:
-    """Return shoulder, elbow and wrist (K, 3) from the base of the spine; axes of the trunk: forward, left, up."""
+def _in_trunk(agent: Agent, upright: Array, q: Array) -> tuple[Array, Array, Array]:
+    """Return shoulder, elbow and wrist (K, 3) from the base of the spine; axes of the trunk: forward, left, up.
+
+    Args:
+        agent: the person's model.
+        upright: (3, 3) those axes in the world where the person stands upright.
+        q: (K, n) its joints.
+    """
     model = agent.model
     data = model.createData()
     trunk, *points = (model.getFrameId(f"{agent.name}_{joint}_link") for joint in (TRUNK, SHOULDER, ELBOW, WRIST))
     pin.framesForwardKinematics(model, data, pin.neutral(model))
-    # Upright, the trunk's axes are those of the person.
-    R_link_trunk = data.oMf[trunk].rotation.T @ stance_of(agent).R_world_person
+    R_link_trunk = data.oMf[trunk].rotation.T @ upright
     placed = np.zeros((len(points), len(q), 3))
     for k, posture in enumerate(q):
         pin.framesForwardKinematics(model, data, posture)

@@ -31,12 +31,12 @@ SAWYER_JOINTS = {
 }
 
 
-def joint_meanings(kind: Kind, model: str) -> Mapping[str, str]:
+def joint_meanings(kind: Kind, model: str = "") -> Mapping[str, str]:
     """Return what the joints are, by their names without the agent's; nothing of a robot that has no table.
 
     Args:
         kind: of the agent.
-        model: of a robot, as the scenario names it; of no account for a person.
+        model: of a robot, as the scenario names it.
     """
     if kind == "person":
         return HUMAN_JOINTS

@@ -7,7 +7,6 @@ load share of a body in free fall, the objective of a start that failed) is None
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,6 @@ import numpy.typing as npt
 
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.trajectory import GRAVITY, limit_share
-from liftopt.scenario.model import scenario_to_dict
 from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
 from liftopt.storage.result_folder import FILES
@@ -54,7 +52,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
         "files": [] if out is None else [str(out / name) for name in FILES],
-        "scenario": scenario_to_dict(solution.scenario),
+        "scenario": solution.scenario.to_dict(),
         "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
@@ -98,7 +96,8 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
     share = limit_share(agent)
-    meanings = joint_meanings(agent.kind, solution.scenario.robot.model)
+    asked = solution.scenario.agents[agent.name]
+    meanings = joint_meanings(asked.kind, "" if asked.kind == "person" else asked.model)
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
@@ -142,7 +141,7 @@ def _grasp_moment(solution: Solution) -> dict[str, Any]:
 def _ground_reaction(solution: Solution) -> dict[str, Any]:
     force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
     vertical = _peak(force[:, 2], solution.time, "N")
-    weight = solution.scenario.human.mass * GRAVITY
+    weight = solution.scenario.first("person").mass * GRAVITY
     return {
         "vertical": vertical,
         "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,

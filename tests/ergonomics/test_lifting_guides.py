@@ -61,7 +61,7 @@ def test_scopes_are_stated(solution: Any) -> None:
 
 
 def test_iso_is_in_range_from_three_kilograms(solution: Any) -> None:
-    heavy = replace(solution, scenario=replace(solution.scenario, table=replace(solution.scenario.table, mass=3.0)))
+    heavy = replace(solution, scenario=solution.scenario.replace({"object.mass": 3.0}))
     (iso,) = (measure for measure in ergonomics_of(heavy, heavy["human"]).measures if measure.name == "ISO 11228-1")
     assert (iso.scope, iso.result) == ("indicative", "not evaluated")
 
