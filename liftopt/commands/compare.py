@@ -46,6 +46,8 @@ def add_compare_parser(commands: Any) -> None:
     parser.add_argument(
         "--robot", nargs="+", default=[], metavar="BAG", help="with sensor_msgs/JointState, one a trial (ROS 1 or 2)"
     )
+    parser.add_argument("--person", metavar="NAME", help="whom --mocap and --forces are of, where several lift")
+    parser.add_argument("--robot-name", metavar="NAME", help="whose --robot is, where the lift has several")
     parser.add_argument("--out", metavar="DIR", required=True, help="folder to write; it must not exist")
     parser.add_argument("--report", action="store_true", help="add the report of the lift with the experiment in it")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
@@ -100,6 +102,8 @@ def _experiment(args: argparse.Namespace, solution: Solution) -> Experiment:
         forces=[one for path in args.forces for one in read_forces(Path(path), calibration, unloaded)],
         robot=[read_robot_record(Path(path)) for path in args.robot],
         forces_lift=span,
+        person=args.person,
+        robot_name=args.robot_name,
     )
 
 
