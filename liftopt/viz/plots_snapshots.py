@@ -2,41 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
 import numpy as np
 import pinocchio as pin
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
-from scipy.spatial import ConvexHull
 
 from liftopt.scenario.build import agents_of, object_of
+from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import BLUE, INK, VERMILION, Array
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
-CIRCLE = 24  # points of a drawn circle
 KEY_LENGTH, LONGEST = 0.2, 0.6  # of the arrow that the key shows, and of any [m]
 KEY_FORCES = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)  # N
 ARROWS = ((BLUE, "-|>"), (VERMILION, "->"))  # color and head, by agent
 HEADROOM = 0.15  # [m]
-
-
-@dataclass(frozen=True)
-class Outline:
-    """One convex part as seen from the side.
-
-    Attributes:
-        polygon: (n, 2) X and Z [m].
-        depth: Y of its middle, larger is farther away [m].
-        color: red, green, blue.
-    """
-
-    polygon: Array
-    depth: float
-    color: tuple[float, float, float]
 
 
 def snapshots(lift: Lift) -> Figure:
@@ -50,8 +31,8 @@ def snapshots(lift: Lift) -> Figure:
     key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in solution.agents))
     for axes, moment in zip(panels, MOMENTS, strict=True):
         k = round(moment * (len(solution.time) - 1))
-        outlines = [outline for model, visual, q in bodies for outline in _outlines(model, visual, q[k])]
-        for part in sorted(outlines, key=lambda part: -part.depth):
+        parts = [part for model, visual, q in bodies for part in outlines(model, visual, q[k])]
+        for part in sorted(parts, key=lambda part: -part.depth):
             axes.add_patch(Polygon(part.polygon, facecolor=part.color, edgecolor=INK, linewidth=0.35))
         axes.plot(path[: k + 1, 0], path[: k + 1, 2], color=INK, linewidth=1.0, linestyle=(0, (1, 1)), zorder=3)
         for agent, (color, head) in zip(solution.agents, ARROWS, strict=True):
@@ -100,34 +81,6 @@ def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
         (model, pin.buildGeomFromUrdfString(model, urdf, pin.GeometryType.VISUAL), q)
         for (model, urdf), q in zip(models, motions, strict=True)
     ]
-
-
-def _outlines(model: pin.Model, visual: pin.GeometryModel, q: Array) -> Iterator[Outline]:
-    data, placements = model.createData(), visual.createData()
-    pin.updateGeometryPlacements(model, data, visual, placements, q)
-    for shape, placement in zip(visual.geometryObjects, placements.oMg, strict=True):
-        points = _surface(shape.geometry) @ placement.rotation.T + placement.translation
-        side = points[:, [0, 2]]
-        red, green, blue, _ = shape.meshColor
-        yield Outline(side[ConvexHull(side).vertices], float(points[:, 1].mean()), (red, green, blue))
-
-
-def _surface(geometry: object) -> Array:
-    """Return points (n, 3) whose convex hull is the shape, in its own frame."""
-    half = getattr(geometry, "halfSide", None)
-    if half is not None:
-        corners = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3), axis=-1).reshape(-1, 3)
-        return np.asarray(corners * half)
-    radius = float(getattr(geometry, "radius"))  # noqa: B009  the base class has none
-    length = getattr(geometry, "halfLength", None)
-    angle = np.linspace(0.0, 2 * np.pi, CIRCLE, endpoint=False)
-    ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(CIRCLE)], axis=1) * radius
-    if length is not None:
-        end = np.array([0.0, 0.0, length])
-        return np.concatenate([ring - end, ring + end])
-    latitudes = np.linspace(-np.pi / 2, np.pi / 2, 2 * (CIRCLE // 4) + 1)
-    pole = np.array([0.0, 0.0, radius])
-    return np.concatenate([ring * np.cos(t) + pole * np.sin(t) for t in latitudes])
 
 
 def _arrow(axes: Axes, point: Array, along: Array, color: str, head: str) -> None:
