@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -14,18 +15,15 @@ from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
-from liftopt.lab.comparison.plots import experiment_tables
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.viz.anatomy import human_curves, robot_curves
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.report_figures import inline_comparisons, inline_figures
+from liftopt.viz.report_figures import inline_figures, section_figures
+from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, joint_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
-
-if TYPE_CHECKING:
-    from liftopt.lab.comparison.experiment import Experiment
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
@@ -38,15 +36,15 @@ HEADLINES = {
 }
 
 
-def write_report(solution: Solution, file: Path, experiment: Experiment | None = None) -> None:
-    """Write the report to ``file``, with the experiment if there is one; its folder is made if need be.
+def write_report(solution: Solution, file: Path, sections: Sequence[ReportSection] = ()) -> None:
+    """Write the report to ``file``, with sections that others add; its folder is made if need be.
 
     Raises:
         InputError: the file cannot be written.
     """
     if file.is_dir():
         raise InputError("--html", str(file), "cannot be written: there is a folder of that name")
-    text = report_html(solution, experiment)
+    text = report_html(solution, sections)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
@@ -54,15 +52,16 @@ def write_report(solution: Solution, file: Path, experiment: Experiment | None =
         raise InputError("--html", str(file), f"cannot be written: {error.strerror or error}") from None
 
 
-def report_html(solution: Solution, experiment: Experiment | None = None) -> str:
-    """Return the report as one HTML page that needs nothing else; with what was recorded, if it was."""
+def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> str:
+    """Return the report as one HTML page that needs nothing else, with sections that others add before the scenario."""
     lift = Lift.of(solution)
     dense, ergonomics = lift.dense, ergonomics_of(lift.dense)
     human = human_curves(dense.agents[0])
     robot = robot_curves(dense.agents[1], solution.scenario.robot.model)
     summary = summary_dict(solution)
     figures = inline_figures(lift)
-    compared = inline_comparisons(experiment) if experiment else {}
+    for section in sections:
+        figures |= section_figures(section)
     context: dict[str, Any] = {
         "css": Markup((files("liftopt.viz.assets") / CSS).read_text(encoding="utf-8")),
         "version": liftopt.__version__,
@@ -71,13 +70,8 @@ def report_html(solution: Solution, experiment: Experiment | None = None) -> str
         "summary": summary,
         "assessment": solution.assessment,
         "headlines": _headlines(solution),
-        "figures": {
-            name: {"svg": Markup(figure.svg), "caption": figure.caption}
-            for name, figure in (figures | compared).items()
-        },
-        "experiment": experiment,
-        "experiment_tables": experiment_tables(experiment) if experiment else {},
-        "compared": list(compared),
+        "figures": {name: {"svg": Markup(figure.svg), "caption": figure.caption} for name, figure in figures.items()},
+        "sections": sections,
         "playback": playback_page(solution),
         "joints": {"person": joint_rows(human, dense), "robot": joint_rows(robot, dense)},
         "near_limit": 100 * NEAR_LIMIT,
