@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.solution.summary import joint_meaning, limit_share
+from liftopt.solution.summary import SAWYER_JOINTS, limit_share
 
 Array = npt.NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
     curves = []
     for name in np.array(robot.joint_names)[robot.moving]:
         joint = str(name).removeprefix(f"{robot.name}_")
-        meaning = joint_meaning(robot.name, model, joint).replace("-", "\N{MINUS SIGN}")
+        meaning = (SAWYER_JOINTS.get(joint, "") if model == "sawyer" else "").replace("-", "\N{MINUS SIGN}")
         curves.append(_curve(robot, joint, f"{joint} ({meaning})" if meaning else joint, +1))
     return tuple(curves)
 

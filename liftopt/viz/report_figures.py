@@ -8,7 +8,7 @@ from html import escape
 
 from matplotlib.figure import Figure
 
-from liftopt.viz.plots import PLOTS, drawn, rendered
+from liftopt.viz.plots import drawn, plots_of, rendered
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_section import ReportSection
 
@@ -27,7 +27,7 @@ class InlineFigure:
 
 def inline_figures(lift: Lift) -> dict[str, InlineFigure]:
     """Return all plots by name."""
-    return {plot.name: _inline(plot.name, plot.caption, drawn(plot, lift)) for plot in PLOTS}
+    return {plot.name: _inline(plot.name, plot.caption, drawn(plot, lift)) for plot in plots_of(lift)}
 
 
 def section_figures(section: ReportSection) -> dict[str, InlineFigure]:
