@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -148,16 +148,21 @@ def plots_of(lift: Lift) -> tuple[Plot, ...]:
     return tuple(plots)
 
 
+def figure_names(agents: Sequence[AgentTrajectory], agent: AgentTrajectory) -> dict[str, str]:
+    """Return the names of an agent's plots by what they show, ``"angles"``."""
+    alone, plots = is_only_one(agents, agent), [plot for plot in PLOTS if isinstance(plot, AgentPlot)]
+    return {plot.what: plot.name if alone else f"{agent.name}_{plot.what}" for plot in plots if plot.kind == agent.kind}
+
+
 def _of(plot: AgentPlot, agent: AgentTrajectory, lift: Lift) -> Plot:
     agents = lift.dense.agents
+    name, alone = figure_names(agents, agent)[plot.what], is_only_one(agents, agent)
     caption = plot.caption.format(who=called(agents, agent))
 
     def draw(lift: Lift) -> Figure:
         return plot.draw(lift, lift.dense[agent.name])
 
-    if is_only_one(agents, agent):
-        return Plot(plot.name, caption, draw)
-    return Plot(f"{agent.name}_{plot.what}", caption, draw, agent.name)
+    return Plot(name, caption, draw, "" if alone else agent.name)
 
 
 def write_plots(solution: Solution, out: Path, formats: Iterable[str] = FORMATS) -> list[Path]:
