@@ -8,8 +8,8 @@ import pinocchio as pin
 
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.multibody.urdf import load_model
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
-from liftopt.storage.result_folder import URDF_FILES
 
 Array = npt.NDArray[np.float64]
 EXACT = 9  # decimals of a placement: a URDF's angles give quarter turns with an error in the last digit
@@ -17,7 +17,7 @@ EXACT = 9  # decimals of a placement: a URDF's angles give quarter turns with an
 
 def urdf_of(solution: Solution, name: str) -> str:
     """Return the URDF of an agent or of the object."""
-    return solution.urdfs[URDF_FILES.get(name, f"{name}.urdf")]
+    return solution.urdfs[urdf_files(solution.scenario)[name]]
 
 
 def model_of(solution: Solution, name: str) -> pin.Model:

@@ -13,7 +13,7 @@ from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Array, Line, draw, panels, percent, time_axes
-from liftopt.viz.who import entry_of
+from liftopt.viz.who import robot_of
 
 Quantity = Literal["angle", "torque"]
 UNIT = {"angle": "deg", "torque": "Nm"}
@@ -56,7 +56,7 @@ def robot_torques(lift: Lift, agent: AgentTrajectory) -> Figure:
 
 
 def _robot(lift: Lift, agent: AgentTrajectory) -> tuple[JointCurve, ...]:
-    return robot_curves(agent, entry_of(lift.dense.scenario, agent, "robot").model)
+    return robot_curves(agent, robot_of(lift.dense.scenario, agent).model)
 
 
 def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figure:

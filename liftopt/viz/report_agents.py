@@ -18,7 +18,7 @@ from liftopt.viz.models import base_of, model_of
 from liftopt.viz.plots import figure_names
 from liftopt.viz.plots_data import Lift, ergonomics
 from liftopt.viz.report_tables import joint_rows
-from liftopt.viz.who import body_of, called, entry_of, is_only_one, listed
+from liftopt.viz.who import body_of, called, is_only_one, listed, robot_of
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def reported(lift: Lift, agent: AgentTrajectory) -> Reported:
     """Return what the report tells of one agent."""
     solution = lift.dense
     agents, alone, person = solution.agents, is_only_one(solution.agents, agent), agent.kind == "person"
-    curves = human_curves(agent) if person else robot_curves(agent, entry_of(solution.scenario, agent, "robot").model)
+    curves = human_curves(agent) if person else robot_curves(agent, robot_of(solution.scenario, agent).model)
     return Reported(
         address="" if alone else f"-{agent.name}",
         heading="" if alone else f": {agent.name}",
@@ -108,7 +108,7 @@ def team_words(solution: Solution) -> str:
             kind = "man" if body.sex == "male" else "woman"
             words.append(f"a {kind} of {body.stature:.2f} m and {body.mass:g} kg{named}")
         else:
-            words.append(f"a {entry_of(solution.scenario, agent, 'robot').model.capitalize()} robot{named}")
+            words.append(f"a {robot_of(solution.scenario, agent).model.capitalize()} robot{named}")
     text = listed(words)
     if len(solution.agents) == 2:
         first, second = (base_of(model_of(solution, agent.name), agent)[:2, 3] for agent in solution.agents)

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from liftopt.multibody.person.provenance import subject_quantities
-from liftopt.scenario.model import Scenario, scenario_to_dict
-from liftopt.scenario.schema import describe
+from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import JointCurve
 from liftopt.viz.who import body_of
@@ -46,9 +45,9 @@ def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str
 
 def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
     """Return a row an entry: key, value, what it is and what is allowed."""
-    values = dict(_flat(scenario_to_dict(scenario)))
+    values = dict(_flat(scenario.to_dict()))
     rows = []
-    for key, about in describe(Scenario):
+    for key, about in scenario.describe():
         what, _, allowed = about.partition(": ")
         rows.append({"key": key, "value": values.get(key, ""), "what": what, "allowed": allowed})
     return rows

@@ -20,7 +20,7 @@ from liftopt.viz.scene_person import SHIRT, person_parts
 from liftopt.viz.scene_sawyer import gripper_parts, sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
-from liftopt.viz.who import body_of, colour_of, entry_of, is_only_one
+from liftopt.viz.who import body_of, colour_of, is_only_one, robot_of
 
 Array = npt.NDArray[np.float64]
 WOOD: Colour = (0.78, 0.60, 0.38)
@@ -107,7 +107,7 @@ def body_path(cast: Cast, body: str) -> str:
 
 def parts_of(cast: Cast) -> list[Part]:
     """Return everything that is drawn of the agents and the object, at zero."""
-    held = cast.solution.scenario.table
+    held = cast.solution.scenario.object
     parts = [part for agent in cast.solution.agents for part in _figure(cast, agent)]
     size = (held.depth, held.width, held.height)
     return [*parts, Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003))]
@@ -125,7 +125,7 @@ def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
         arm = sawyer_mesh_parts(cast.sawyer, agent.name, world_base)
     if not is_only_one(solution.agents, agent):  # on the ground each needs names of its own
         arm = [replace(part, name=f"{agent.name}_{part.name}") if part.body == GROUND else part for part in arm]
-    return [*arm, *gripper_parts(agent.name, world_base, entry_of(solution.scenario, agent, "robot").tool.length)]
+    return [*arm, *gripper_parts(agent.name, world_base, robot_of(solution.scenario, agent).tool.length)]
 
 
 def _shirt(cast: Cast, person: AgentTrajectory) -> Colour:

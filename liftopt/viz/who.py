@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, overload
 
-from liftopt.multibody.agent import Kind
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.build import subject_of
-from liftopt.scenario.model import Human, Robot, Scenario
+from liftopt.scenario.model import Scenario
 from liftopt.viz.scene_part import Colour
 
 # Of arrows and paths, in the order of the agents: after Okabe & Ito (2008), told apart with any common colour vision.
@@ -41,15 +40,15 @@ def listed(words: Sequence[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
-@overload
-def entry_of(scenario: Scenario, agent: AgentTrajectory, kind: Literal["person"]) -> Human: ...
-@overload
-def entry_of(scenario: Scenario, agent: AgentTrajectory, kind: Literal["robot"]) -> Robot: ...
-def entry_of(scenario: Scenario, agent: AgentTrajectory, kind: Kind) -> Human | Robot:
-    """Return what the scenario says of an agent of that kind."""
-    return scenario.human if kind == "person" else scenario.robot
-
-
 def body_of(scenario: Scenario, person: AgentTrajectory) -> Subject:
     """Return the body that a person has."""
-    return subject_of(entry_of(scenario, person, "person"))
+    who = scenario.agents[person.name]
+    assert isinstance(who, Person)
+    return subject_of(who)
+
+
+def robot_of(scenario: Scenario, robot: AgentTrajectory) -> Robot:
+    """Return what the scenario says of a robot."""
+    who = scenario.agents[robot.name]
+    assert isinstance(who, Robot)
+    return who

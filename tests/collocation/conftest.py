@@ -22,6 +22,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.search.initial_guess import InitialGuess, posture_starts
@@ -218,7 +219,7 @@ def human() -> Agent:
 
 @pytest.fixture(scope="session")
 def sawyer() -> Agent:
-    return sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4)
+    return sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
 
 
 @pytest.fixture(scope="session")

@@ -155,7 +155,7 @@ def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, rais
         at = time - STANDING - late * duration
         return np.stack([np.interp(at, dense.time, column) for column in flat.T], axis=1)
 
-    person, none = solution.scenario.human, np.zeros((len(time), 3))
+    person, none = solution.scenario.first("person"), np.zeros((len(time), 3))
     subject = Subject(person.stature, person.mass, "male" if person.sex == "male" else "female")
     return RecordedLift(
         source="made up",

@@ -73,9 +73,9 @@ def test_its_scenario(recorded: RecordedLift) -> None:
     start, end = scenario.task.start, scenario.task.end
     assert end.height - start.height == pytest.approx(0.23, abs=0.02)
     assert scenario.duration == pytest.approx(2.1, abs=0.1)
-    assert 0.4 < scenario.table.depth < 0.7
+    assert 0.4 < scenario.object.depth < 0.7
     assert 0.4 < (end.human_distance or 0.0) < (start.human_distance or 0.0) < 0.7
-    assert (scenario.human.sex, scenario.human.mass) == ("female", 60.0)
+    assert (scenario.first("person").sex, scenario.first("person").mass) == ("female", 60.0)
 
 
 def test_another_tool_worked_on_this_trial(box_lift: Path) -> None:

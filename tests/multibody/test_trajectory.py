@@ -10,6 +10,7 @@ import pytest
 
 from liftopt.multibody.agent import Agent, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.multibody.trajectory import agent_trajectory, free_flyer_state, object_trajectory
@@ -46,7 +47,7 @@ def swinging_arm() -> Agent:
 
 AGENTS = {
     "human": lambda: human_agent(Subject(1.75, 75.0, "male")),
-    "robot": lambda: sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4),
+    "robot": lambda: sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4),
     "swing": swinging_arm,
 }
 
