@@ -67,6 +67,7 @@ def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float,
     q[:, 4] = np.radians([0.0, 10.0, 20.0, 30.0, 45.0])
     return SimpleNamespace(
         name=name,
+        kind="person" if name == "human" else "robot",
         joint_names=names,
         moving=np.array([False] * 3 + [True] * joints),
         q=q,

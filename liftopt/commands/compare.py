@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from liftopt.commands.console_text import captured
 from liftopt.commands.record import add_divider_arguments, add_unloaded_argument, calibration_of, unloaded_of
+from liftopt.commands.terminal import captured, printing
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
 WIDEST = 27  # of a quantity's name; the tables stand below each other
 
 
-def add_compare_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_compare_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "compare",
         help="put recordings of a lift beside its prediction",
@@ -51,7 +50,7 @@ def add_compare_parser(commands: Any, run: Callable[[argparse.Namespace], int]) 
     parser.add_argument("--report", action="store_true", help="add the report of the lift with the experiment in it")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     add_divider_arguments(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(compare_text))
 
 
 def compare_text(args: argparse.Namespace) -> str:

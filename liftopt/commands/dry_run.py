@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from liftopt.commands.export import add_goal_time
+from liftopt.commands.terminal import telling
 
 MODES = ("velocity", "position", "position_w_id", "torque")
 
 
-def add_dry_run_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_dry_run_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "dry-run",
         help="simulate what the robot would really do",
@@ -34,7 +35,7 @@ def add_dry_run_parser(commands: Any, run: Callable[[argparse.Namespace], int]) 
     parser.add_argument("--trials", type=int, default=3, metavar="N", help="how many (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what differs between trials (default: 0)")
     add_goal_time(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=telling(dry_run_text))
 
 
 def dry_run_text(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+from liftopt.commands.terminal import printing
 
 MODES = ("velocity", "position", "position_w_id")
 FORMATS = ("ros1", "ros2", "mcap", "csv", "json")
@@ -15,8 +16,8 @@ FORMATS = ("ros1", "ros2", "mcap", "csv", "json")
 GOAL_TIME = 3.0
 
 
-def add_export_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_export_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "export",
         help="write the robot's motion as ROS bags, CSV and JSON",
@@ -48,7 +49,7 @@ def add_export_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
     )
     add_goal_time(parser)
     parser.add_argument("--json", action="store_true", help="print what was written, and the notes, as one JSON object")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(export_text))
 
 
 def add_goal_time(parser: argparse.ArgumentParser) -> None:

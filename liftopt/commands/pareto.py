@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from liftopt.commands.terminal import telling
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.storage.solved_scenario import scenario_or_solved
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
     from liftopt.studies.pareto import Front, Point
 
 
-def add_pareto_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_pareto_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "pareto",
         help="what the person gains where the robot works more: the front of their efforts",
@@ -38,7 +39,7 @@ def add_pareto_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
         "--set", action="append", default=[], dest="overrides", metavar="KEY=VALUE", help="as with solve"
     )
     parser.add_argument("--json", action="store_true", help="print pareto.json instead of the table")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=telling(pareto))
 
 
 def pareto(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
@@ -103,8 +104,8 @@ def _row(point: Point, dominated: bool) -> dict[str, Any]:
     """Return figures of a point, units in the names."""
     import numpy as np
 
+    from liftopt.multibody.trajectory import limit_share
     from liftopt.solution.checks import FINER
-    from liftopt.solution.summary import limit_share
 
     times = np.linspace(0.0, point.candidate.problem.task.duration, FINER * point.candidate.spline.intervals + 1)
     human, robot = (float(limit_share(agent).max()) for agent in point.candidate.at(times).agents)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from liftopt.commands.terminal import telling
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.scenario.model import Scenario
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
 
 
-def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_sensitivity_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "sensitivity",
         help="what effort, peak torques and load share depend on",
@@ -43,7 +44,7 @@ def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], in
     )
     parser.add_argument("--json", action="store_true", help="print all slopes as one JSON object")
     parser.add_argument("--plot", metavar="FILE", help="write a figure: .svg, .png or .pdf")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=telling(sensitivity))
 
 
 def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:

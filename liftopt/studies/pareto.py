@@ -20,7 +20,7 @@ from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
 from liftopt.scenario.model import Scenario
 from liftopt.search.candidate import Candidate
-from liftopt.solution.summary import shares
+from liftopt.solution.grasp_loads import shares
 
 Progress = Callable[[str], None]
 DECADES = 4.0  # that the ratio of the weights runs over

@@ -22,11 +22,12 @@ from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
 from liftopt.files.entries import FREE
+from liftopt.multibody.trajectory import limit_share
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
-from liftopt.solution.summary import limit_share, shares
+from liftopt.solution.grasp_loads import shares
 
 Array = npt.NDArray[np.float64]
 # Of central differences of the problem itself, times the value: their error is its square.

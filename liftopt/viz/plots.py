@@ -10,6 +10,7 @@ from pathlib import Path
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from liftopt.assessment.who import listed
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
 from liftopt.multibody.trajectory import AgentTrajectory
@@ -21,7 +22,7 @@ from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motio
 from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, robot_angles, robot_torques
 from liftopt.viz.plots_snapshots import snapshots
 from liftopt.viz.plots_style import STYLE, head
-from liftopt.viz.who import are_a_pair, called, is_only_one, listed
+from liftopt.viz.who import are_a_pair, called, is_only_one
 
 PNG_DPI = 200
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
-from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.checks import FINER
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
@@ -29,8 +27,3 @@ class Lift:
     def of(solution: Solution, factor: int = FINER) -> Lift:
         """Return the lift of ``solution``."""
         return Lift(solution, refined(solution, factor), factor)
-
-
-def ergonomics(solution: Solution, person: AgentTrajectory) -> Ergonomics:
-    """Return the ergonomic measures of one person."""
-    return ergonomics_of(solution)

@@ -6,9 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from liftopt.assessment.joints import NEAR_LIMIT
+from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.anatomy import ANATOMY
-from liftopt.viz.plots_data import Lift, ergonomics
+from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
 from liftopt.viz.who import called
 
@@ -18,7 +19,7 @@ ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon")
 def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return a map of the share of strength by joint and time, darker for more."""
     solution = lift.dense
-    uses = ergonomics(solution, agent).strength
+    uses = ergonomics_of(solution, agent).strength
     share = 100 * np.stack([use.share for use in uses])
     figure, grid = panels(1, height=2.9, left=2.15, right=1.2)
     axes = grid[0][0]
@@ -45,7 +46,7 @@ def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
 def posture_score(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return the grand score of RULA over time, and the scores it is made of."""
     solution = lift.dense
-    scores, time = ergonomics(solution, agent).rula, percent(solution.time)
+    scores, time = ergonomics_of(solution, agent).rula, percent(solution.time)
     figure, grid = panels(2, height=1.5)
     grand, parts = (line[0] for line in grid)
     low = 0.5

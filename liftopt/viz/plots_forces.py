@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.solution.summary import shares
+from liftopt.solution.grasp_loads import shares
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes
 from liftopt.viz.who import are_a_pair, called

@@ -10,13 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
 
+from liftopt.assessment.who import listed
 from liftopt.multibody.urdf import load_free_model
 from liftopt.solution.solution import Solution
 from liftopt.viz.models import base_of, model_of, urdf_of
 from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import BLUE, GREEN, INK, PURPLE, VERMILION, Array
-from liftopt.viz.who import are_a_pair, body_of, called, listed
+from liftopt.viz.who import are_a_pair, body_of, called
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
 KEY_LENGTH, LONGEST = 0.2, 0.6  # of the arrow that the key shows, and of any [m]

@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.ergonomics.measures import Ergonomics
-from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.assessment.who import listed
+from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
+from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.solution.finding import MATHEMATICS, Finding
 from liftopt.solution.solution import Solution
-from liftopt.solution.summary import GRAVITY
 from liftopt.viz.anatomy import human_curves, robot_curves
 from liftopt.viz.models import base_of, model_of
 from liftopt.viz.plots import figure_names
-from liftopt.viz.plots_data import Lift, ergonomics
+from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_tables import joint_rows
-from liftopt.viz.who import body_of, called, is_only_one, listed, robot_of
+from liftopt.viz.who import body_of, called, is_only_one, robot_of
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def reported(lift: Lift, agent: AgentTrajectory) -> Reported:
         figures=figure_names(agents, agent),
         labels={curve.joint: curve.label for curve in curves},
         sex=body_of(solution.scenario, agent).sex if person else "",
-        ergonomics=ergonomics(solution, agent) if person else None,
+        ergonomics=ergonomics_of(solution, agent) if person else None,
     )
 
 

@@ -35,11 +35,6 @@ def are_a_pair(agents: Sequence[AgentTrajectory]) -> bool:
     return sorted(agent.kind for agent in agents) == ["person", "robot"]
 
 
-def listed(words: Sequence[str]) -> str:
-    """Return words as a sentence has them: ``"a, b and c"``."""
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
-
-
 def body_of(scenario: Scenario, person: AgentTrajectory) -> Subject:
     """Return the body that a person has."""
     who = scenario.agents[person.name]

@@ -12,12 +12,12 @@ import pinocchio as pin
 import pytest
 from scipy.interpolate import CubicSpline
 
+from liftopt.assessment.assess import assessed
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario, scenario_from_dict
 from liftopt.scenario.urdf_files import urdf_files
-from liftopt.solution.finding import Assessment, Finding
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -114,21 +114,8 @@ def _made(scenario: Scenario, solved: Callable[..., Any]) -> Team:
         urdfs={urdf_files(scenario)[name]: text for name, text in texts.items()},
         objective_terms=dict.fromkeys(terms, 100.0),
         objective_weights=dict.fromkeys(terms, 1.0),
-        assessment=_assessment(tracks),
     )
-    return Team(solution, agents)
-
-
-def _assessment(tracks: list[Any]) -> Assessment:
-    """Return a finding on everybody whose value tells who it is of."""
-    found = [Finding("verdict.mathematics", "info", "solved and verified", "Solved and verified.")]
-    for i, track in enumerate(tracks):
-        words = f"The {track.kind} {track.name} is within limits."
-        found.append(Finding(f"verdict.{track.kind}", "info", "within limits", words, track.name))
-        code, number = ("person.strength", 0.31 + i / 100) if track.kind == "person" else ("robot.torque", 0.21 + i / 100)
-        text = f"{track.name} uses {100 * number:.0f} %."
-        found.append(Finding(code, "info", f"{track.name} used", text, track.name, value=number, limit=1.0))
-    return Assessment.of(found)
+    return Team(assessed(solution), agents)
 
 
 def _followed(agent: Agent, points: Array) -> Array:
