@@ -78,9 +78,10 @@ def compare_text(args: argparse.Namespace) -> str:
             for kind in FORMATS:
                 (folder / f"{plot.name}.{kind}").write_bytes(rendered(figure, kind))
         if args.report:
+            from liftopt.lab.comparison.section import experiment_section
             from liftopt.viz.report import write_report
 
-            write_report(solution, folder / "report.html", found)
+            write_report(solution, folder / "report.html", [experiment_section(found)])
     return _json(summary) if args.json else captured(lambda console: _print(found, args.out, console))
 
 

@@ -73,8 +73,8 @@ def write_front(front: Front, values: dict[str, Any], out: Path) -> None:
     """
     from matplotlib import rc_context
 
+    from liftopt.studies.pareto_plot import pareto_figure
     from liftopt.viz.plots import rendered
-    from liftopt.viz.plots_pareto import pareto_figure
     from liftopt.viz.plots_style import STYLE
 
     text = io.StringIO()

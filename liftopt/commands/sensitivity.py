@@ -113,8 +113,8 @@ def _sharp_plan(scenario: Scenario, progress: Callable[[str], None] | None) -> t
 def _write_plot(study: Study, path: Path) -> None:
     from matplotlib import rc_context
 
+    from liftopt.studies.sensitivity_plot import sensitivity_figure
     from liftopt.viz.plots import rendered
-    from liftopt.viz.plots_sensitivity import sensitivity_figure
     from liftopt.viz.plots_style import STYLE
 
     with rc_context(STYLE):

@@ -9,11 +9,10 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.build import agents_of
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
+from liftopt.viz.models import base_of, grasp_frame, model_of
 
 Array = npt.NDArray[np.float64]
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
@@ -54,12 +53,16 @@ class Playback:
         bodies: by joint name for what an agent moves, by its own name for the object.
         forces: by agent.
         zero: (4, 4) T_world_body of every body while all joints are at zero.
+        joints: names of the bodies that each agent moves, by agent.
+        bases: (4, 4) T_world_base by agent, of its feet or of its arm's base: X ahead, Z up.
     """
 
     time: Array
     bodies: dict[str, BodyTrack]
     forces: dict[str, ForceTrack]
     zero: dict[str, Array]
+    joints: dict[str, tuple[str, ...]]
+    bases: dict[str, Array]
 
 
 def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
@@ -77,19 +80,22 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     bodies: dict[str, BodyTrack] = {}
     forces: dict[str, ForceTrack] = {}
     zero: dict[str, Array] = {}
-    for agent, track in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
+    joints: dict[str, tuple[str, ...]] = {}
+    bases: dict[str, Array] = {}
+    for track in solution.agents:
+        model = model_of(solution, track.name)
         q = motion_between(knots, track.q, track.v, track.a, time)[0]
-        placements = _placements(agent, q)
+        placements = _placements(model, q)
         bodies |= {name: _track(list_) for name, list_ in placements.items()}
-        forces[agent.name] = _force(agent, track, knots, time, q)
-        zero |= {
-            name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
-        }
+        forces[track.name] = _force(model, track, knots, time, q)
+        zero |= {name: list_[0].homogeneous for name, list_ in _placements(model, np.zeros((1, model.nq))).items()}
+        joints[track.name] = tuple(placements)
+        bases[track.name] = base_of(model, track)
     held = solution.object
     pose = motion_between(knots, held.pose, held.pose_velocity, held.pose_acceleration, time)[0]
     bodies[held.name] = _track([_object_placement(row) for row in pose])
     zero[held.name] = np.eye(4)
-    return Playback(time, bodies, forces, zero)
+    return Playback(time, bodies, forces, zero, joints, bases)
 
 
 def _check(solution: Solution) -> None:
@@ -102,9 +108,8 @@ def _check(solution: Solution) -> None:
         raise InputError(name, NO_VALUE, "cannot be shown: the result's time does not run forward")
 
 
-def _placements(agent: Agent, q: Array) -> dict[str, list[pin.SE3]]:
+def _placements(model: pin.Model, q: Array) -> dict[str, list[pin.SE3]]:
     """Return T_world_joint of every joint at each row of ``q`` (K, n)."""
-    model = agent.model
     data = model.createData()
     names = list(model.names)[1:]
     placements: dict[str, list[pin.SE3]] = {name: [] for name in names}
@@ -121,9 +126,8 @@ def _object_placement(pose: Array) -> pin.SE3:
     return pin.SE3(roll @ pitch @ yaw, pose[:3])
 
 
-def _force(agent: Agent, track: AgentTrajectory, knots: Array, time: Array, q: Array) -> ForceTrack:
-    model = agent.model
-    data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+def _force(model: pin.Model, track: AgentTrajectory, knots: Array, time: Array, q: Array) -> ForceTrack:
+    data, frame = model.createData(), model.getFrameId(grasp_frame(track.name))
     points = np.zeros((len(time), 3))
     for k, row in enumerate(q):
         pin.forwardKinematics(model, data, row)

@@ -17,7 +17,7 @@ from liftopt.commands.pareto import front_dict, table
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.solve import lift
 from liftopt.studies.pareto import Front, pareto_front, ratio_text, weights_at
-from liftopt.viz.plots_pareto import pareto_figure
+from liftopt.studies.pareto_plot import pareto_figure
 from liftopt.viz.plots_style import STYLE
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")

@@ -156,9 +156,7 @@ def _hand(
     yield _compared("hand_force", "sensors", label, "N", dense, the_person(dense, person).grasp_force[:, 2], trials)
 
 
-def _robot(
-    dense: Solution, name: str | None, records: Sequence[RobotRecord], notes: list[str]
-) -> Iterator[Comparison]:
+def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], notes: list[str]) -> Iterator[Comparison]:
     if not records:
         return
     duration, agent = float(dense.time[-1]), the_robot(dense, name, "--robot-name")

@@ -97,10 +97,12 @@ def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Ar
     """Return a robot's torques (7,), force and moment on its gripper (3,) that hold the object still where it is."""
     held = object_of(dense.scenario, dense.urdfs)
     arms = dense.object.grasp_position[k] - dense.object.pose[k, :3]
-    columns, loads, first = [], [], 0
+    columns: list[Array] = []
+    loads: list[Array] = []
+    first = 0
     for agent, arm in zip(dense.agents, arms, strict=True):
         if agent.name == robot.name:
-            first = sum(map(len, loads))
+            first = sum(len(load) for load in loads)
         columns.append(np.vstack([np.eye(3), cross(arm, np.eye(3)).T]))
         loads.append(agent.grasp_force[k])
         if agent.grasp.moments:
