@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Protocol
 
-from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import PERSON, ROBOT
 
 SUBJECTS = {"person": PERSON, "robot": ROBOT}
 HANDS = {PERSON: "hand", ROBOT: "gripper"}
+
+
+class Named(Protocol):
+    """Anything that has a name and a kind: an agent, or its trajectory."""
+
+    @property
+    def name(self) -> str:
+        """Of the agent."""
+
+    @property
+    def kind(self) -> str:
+        """``"person"`` or ``"robot"``."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +49,16 @@ class Who:
         return self.subject if self.is_alone else f"{self.subject} {self.name}"
 
     @property
+    def called(self) -> str:
+        """``"the person"``, ``"anna"``."""
+        return self.the if self.is_alone else self.name
+
+    @property
+    def label(self) -> str:
+        """Of a column: ``"person"``, ``"anna"``."""
+        return self.subject if self.is_alone else self.name
+
+    @property
     def of(self) -> str:
         """What follows a word that does not say whose it is: nothing, or ``" of anna"``."""
         return "" if self.is_alone else f" of {self.name}"
@@ -47,7 +69,7 @@ class Who:
         return HANDS[self.subject]
 
 
-def who_is(agent: AgentTrajectory, agents: Iterable[AgentTrajectory]) -> Who:
+def who_is(agent: Named, agents: Iterable[Named]) -> Who:
     """Return how an agent among ``agents`` is told."""
     same = sum(other.kind == agent.kind for other in agents)
     return Who(SUBJECTS[agent.kind], agent.name, same == 1)

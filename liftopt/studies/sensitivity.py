@@ -24,6 +24,7 @@ from liftopt.errors import InputError
 from liftopt.files.entries import FREE
 from liftopt.multibody.trajectory import limit_share
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import partner
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
@@ -71,12 +72,18 @@ def parameters_of(scenario: Scenario) -> tuple[Parameter, ...]:
         Parameter("start height", ("task.start.height",), 0.01, "m"),
         Parameter("end height", ("task.end.height",), 0.01, "m"),
         Parameter("grasp from feet", ("task.start.human_distance", "task.end.human_distance"), 0.01, "m"),
-        Parameter("feet to robot", ("task.standing_distance",), 0.01, "m"),
+        Parameter(_opposite(scenario), ("task.standing_distance",), 0.01, "m"),
     ]
     for name, agent in scenario.agents.items():
         if agent.kind == "robot":
             found.append(Parameter(_of(scenario, name, "robot base height"), (f"{name}.base_height",), 0.01, "m"))
     return (*found, Parameter("duration", ("duration",), 0.1, "s"))
+
+
+def _opposite(scenario: Scenario) -> str:
+    """Return what the standing distance is: the lead's partner may be a robot or a person."""
+    other = partner(scenario)
+    return "feet to robot" if other is None or scenario.agents[other].kind == "robot" else "feet to feet"
 
 
 def _of(scenario: Scenario, name: str, what: str) -> str:
@@ -154,6 +161,12 @@ def study(
     """
     chosen = parameters_of(candidate.scenario) if parameters is None else parameters
     return _Differences(candidate, cache).study(chosen, progress or (lambda line: None))
+
+
+def bearers(study: Study) -> tuple[str, ...]:
+    """Return the names of those whose part of the load is told: of the people, or of everybody where there are none."""
+    agents = study.candidate.problem.team.agents
+    return tuple(agent.name for agent in agents if agent.kind == "person") or tuple(agent.name for agent in agents)
 
 
 def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario:

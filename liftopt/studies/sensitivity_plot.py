@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import cycle
+
 from matplotlib.figure import Figure
 
-from liftopt.studies.sensitivity import Study
-from liftopt.viz.plots_style import BLUE, INK, VERMILION, WIDTH
+from liftopt.assessment.who import who_is
+from liftopt.studies.sensitivity import Study, bearers
+from liftopt.viz.plots_style import INK, LINES, WIDTH
 
 ROW, MARGINS = 0.34, 0.9  # height of a parameter and of what is around all of them [in]
+THICK = 0.36  # of a bar, at most, as a share of its row
 
 
 def sensitivity_figure(study: Study) -> Figure:
@@ -20,28 +24,32 @@ def sensitivity_figure(study: Study) -> Figure:
     figure = Figure(figsize=(WIDTH, height))
     figure.subplots_adjust(left=0.26, right=0.98, top=1 - 0.3 / height, bottom=0.6 / height, wspace=0.12)
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=(2, 1))
-    human, robot = (agent.name for agent in study.candidate.problem.team.agents)
-    panels = (
-        (left, (("effort " + human, BLUE, "person's effort", 0.2), ("effort " + robot, VERMILION, "robot's", -0.2))),
-        (right, (("share " + human, BLUE, None, 0.0),)),
-    )
-    for axes, series in panels:
-        for name, color, label, shift in series:
+    agents, bearing = study.candidate.problem.team.agents, bearers(study)
+    told = {agent.name: who_is(agent, agents) for agent in agents}
+    colors = {agent.name: line.color for agent, line in zip(agents, cycle(LINES), strict=False)}
+    panels = ((left, "effort", list(told)), (right, "share", bearing))
+    for axes, quantity, names in panels:
+        step = 0.8 / len(names)
+        for i, name in enumerate(names):
+            figured, shift = f"{quantity} {name}", step * ((len(names) - 1) / 2 - i)
+            label = f"{told[name].label}'s" + (" effort" if i == 0 and quantity == "effort" else "")
             # Efforts relative to now, shares as they are: percent, or points of percent.
-            scale = 100.0 / (study.figures[name] if name.startswith("effort") else 1.0)
-            values = [scale * s.slopes[name] * s.change for s in lines]
-            bars = axes.barh(
-                [row + shift for row in range(len(lines))], values, 0.36, color=color, label=label, alpha=0.9
-            )
+            scale = 100.0 / (study.figures[figured] if quantity == "effort" else 1.0)
+            values = [scale * s.slopes[figured] * s.change for s in lines]
+            rows, thick = [row + shift for row in range(len(lines))], min(THICK, 0.9 * step)
+            bars = axes.barh(rows, values, thick, color=colors[name], label=label, alpha=0.9)
             for bar, sensitivity in zip(bars, lines, strict=True):
                 bar.set_hatch("" if sensitivity.is_reliable else "////")
                 bar.set_edgecolor("white")
         axes.axvline(0.0, color=INK, linewidth=0.8)
         axes.grid(axis="y", visible=False)
         axes.set_axisbelow(True)
-    names = [f"{s.parameter.name} +{s.change:.3g} {s.parameter.unit}" for s in lines]
-    left.set_yticks(range(len(lines)), names)
+    changes = [f"{s.parameter.name} +{s.change:.3g} {s.parameter.unit}" for s in lines]
+    left.set_yticks(range(len(lines)), changes)
     left.set(title="Effort [%]", xlabel="change; hatched: not in proportion, a trend at best")
     left.legend(loc="lower right")
-    right.set(title="Load the person bears", xlabel="points of percent")
+    whose = told[bearing[0]].called if len(bearing) == 1 else "each"
+    right.set(title=f"Load {whose} bears", xlabel="points of percent")
+    if len(bearing) > 1:
+        right.legend(loc="lower right")
     return figure
