@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle
+from textwrap import wrap
 
 import numpy as np
 import pinocchio as pin
@@ -30,6 +31,7 @@ ARROWS = (
     (PURPLE, "->", "pink, open head"),
 )
 HEADROOM = 0.15  # [m]
+WORDS, LINE = 160, 0.2  # that a line below the panels holds, and its height [in]
 
 
 def snapshots(lift: Lift) -> Figure:
@@ -84,9 +86,15 @@ def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
         f"by {called(agents, agent)} ({words})" for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
     ]
     side = "the person's right" if are_a_pair(agents) else "the side, x to the right"
-    whose = "the hand" if are_a_pair(agents) else f"the hand of {agents[0].name}"
-    words = f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}."
-    figure.supxlabel(words, fontsize=10.5, color=INK, y=0.01)
+    whose = "the hand" if are_a_pair(agents) else f"the hand of {called(agents, agents[0])}"
+    lines = wrap(
+        f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}.",
+        WORDS,
+    )
+    old, room, at = figure.get_figheight(), LINE * (len(lines) - 1), figure.subplotpars
+    figure.set_figheight(old + room)
+    figure.subplots_adjust(top=1 - (1 - at.top) * old / (old + room), bottom=(at.bottom * old + room) / (old + room))
+    figure.supxlabel("\n".join(lines), fontsize=10.5, color=INK, y=0.01)
 
 
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:

@@ -99,7 +99,7 @@ def subject_words(finding: Finding, agents: Sequence[AgentTrajectory]) -> str:
 
 
 def team_words(solution: Solution) -> str:
-    """Return who lifts: "A man of 1.75 m and 75 kg and a Sawyer robot, 1.9 m apart"."""
+    """Return who lifts: "A man of 1.75 m and 75 kg and a Sawyer robot, 1.9 m apart,"."""
     words = []
     for agent in solution.agents:
         named = "" if is_only_one(solution.agents, agent) else f" ({agent.name})"
@@ -112,7 +112,7 @@ def team_words(solution: Solution) -> str:
     text = listed(words)
     if len(solution.agents) == 2:
         first, second = (base_of(model_of(solution, agent.name), agent)[:2, 3] for agent in solution.agents)
-        text += f", {round(float(np.hypot(*(second - first))), 6):g} m apart"
+        text += f", {round(float(np.hypot(*(second - first))), 6):g} m apart,"
     return text[0].upper() + text[1:]
 
 
