@@ -15,6 +15,7 @@ from liftopt.files.suggestions import did_you_mean, nearest
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
+    from typing_extensions import Self
 else:
     ModelMetaclass = type(BaseModel)
 
@@ -48,19 +49,38 @@ class Section(BaseModel, metaclass=_Telling):
             if value is None:
                 value = extra_of(field).get("word")
             if value is not None:
-                result[name] = value
+                result[field.alias or name] = value
         return result
 
-    def changed(self, **values: Any) -> Any:
+    def changed(self, **values: Any) -> Self:
         """Return the section with some entries changed, checked anew."""
-        return type(self)(**{name: getattr(self, name) for name in type(self).model_fields} | values)
+        fields = type(self).model_fields.items()
+        return type(self)(**{field.alias or name: getattr(self, name) for name, field in fields} | values)
 
     @classmethod
-    def refusal(cls, error: ValidationError, values: Mapping[str, Any]) -> InputError:
+    def checked(cls, tables: Any, prefix: str = "") -> Self:
+        """Return the section of a file's tables; ``prefix``, with its dot, begins the keys of messages."""
+        try:
+            return cls.model_validate(tables)
+        except ValidationError as error:
+            raise cls.refusal(error, tables, prefix) from None
+
+    @classmethod
+    def refusal(cls, error: ValidationError, values: Any, prefix: str = "") -> InputError:
         """Return our error for pydantic's about ``values``: unknown keys come first, others may follow from them."""
-        faults = error.errors(include_url=False, include_context=False)
-        fault = next((fault for fault in faults if fault["type"] == "extra_forbidden"), faults[0])
-        return refusal_at(cls, fault["loc"], fault["type"], fault["input"])
+        fault = first_fault(error)
+        return refusal_at(cls, fault["loc"], fault["type"], fault["input"], prefix)
+
+
+def first_fault(error: ValidationError) -> Any:
+    """Return the fault to tell of: an unknown key, from which others may follow, or the first in the order of keys."""
+    faults = error.errors(include_url=False, include_context=False)
+    return next((fault for fault in faults if fault["type"] == "extra_forbidden"), faults[0])
+
+
+def keys_of(of: type[BaseModel]) -> dict[str, FieldInfo]:
+    """Return the fields of a section by their keys in a file."""
+    return {field.alias or name: field for name, field in of.model_fields.items()}
 
 
 def refusal_at(of: type[BaseModel], place: Place, kind: str, value: object, prefix: str = "") -> InputError:
@@ -77,7 +97,7 @@ def refusal_at(of: type[BaseModel], place: Place, kind: str, value: object, pref
     key = prefix + ".".join(map(shown_key, keys))
     if kind == "extra_forbidden":
         inside = section_at(of, keys[:-1])
-        known = list(inside.model_fields) if inside else []
+        known = list(keys_of(inside)) if inside else []
         offer = did_you_mean(nearest(keys[-1], known)) or "; known here: " + ", ".join(known)
         return InputError(key, value, "unknown key" + offer)
     field = field_at(of, keys)
@@ -98,22 +118,22 @@ def section_at(of: type[BaseModel], keys: Sequence[str]) -> type[BaseModel] | No
     """Return the section that keys lead to, None if there is none."""
     inside: type[BaseModel] | None = of
     for key in keys:
-        if inside is None or key not in inside.model_fields:
+        if inside is None or key not in keys_of(inside):
             return None
-        inside = section_of(inside.model_fields[key])
+        inside = section_of(keys_of(inside)[key])
     return inside
 
 
 def field_at(of: type[BaseModel], keys: Sequence[str]) -> FieldInfo | None:
     """Return the field that keys lead to, None if there is none."""
     inside = section_at(of, keys[:-1])
-    return None if inside is None else inside.model_fields.get(keys[-1])
+    return None if inside is None else keys_of(inside).get(keys[-1])
 
 
 def allowed(field: FieldInfo) -> str:
     """Return what a field accepts, in words that follow "must be"."""
     inside = section_of(field)
-    return allowed_in(field) if inside is None else "a section with the keys " + ", ".join(inside.model_fields)
+    return allowed_in(field) if inside is None else "a section with the keys " + ", ".join(keys_of(inside))
 
 
 def about(field: FieldInfo) -> str:

@@ -16,7 +16,7 @@ from pydantic import AfterValidator, ValidationError, model_validator
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import entry, number
-from liftopt.files.section import Section, refusal_at, shown_key
+from liftopt.files.section import Section, first_fault, refusal_at, shown_key
 from liftopt.files.suggestions import did_you_mean
 from liftopt.scenario.agents import KINDS, Agent, Agents, Kind, Person, Robot
 from liftopt.scenario.box import Box
@@ -113,10 +113,9 @@ class Scenario(Section):
         return tomli_w.dumps(self.to_dict())
 
     @classmethod
-    def refusal(cls, error: ValidationError, values: Mapping[str, Any]) -> InputError:
+    def refusal(cls, error: ValidationError, values: Any, prefix: str = "") -> InputError:
         """Return our error for pydantic's, with an agent's keys by its name."""
-        faults = error.errors(include_url=False, include_context=False)
-        fault = next((fault for fault in faults if fault["type"] == "extra_forbidden"), faults[0])
+        fault = first_fault(error)
         place, kind, value = list(fault["loc"]), fault["type"], fault["input"]
         team = _kinds_in(values.get(AGENTS))
         if kind == "extra_forbidden":

@@ -18,7 +18,7 @@ from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.keys import changes_in
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
-from liftopt.search.candidate import Plan
+from liftopt.search.candidate import Candidate
 from liftopt.search.mesh_refinement import meshes_below, neighbour
 
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
@@ -118,7 +118,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     for intervals in meshes:
         steps = [_stepwise(varied, intervals, repeats) for varied in lifts]
         found["stepwise_ms"].append(float(np.mean([1e3 * timing.median for timing, _ in steps])))
-        last = [plan.result.iterations for _, plan in steps if plan]
+        last = [candidate.result.iterations for _, candidate in steps if candidate]
         found["stepwise_iterations"].append(float(np.mean(last)))
         found["not_converged"] += [intervals] * (len(steps) - len(last))
     an_interval = np.array(found["ms"]) / np.array(meshes)
@@ -135,7 +135,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     return Row(ratio, note, {"iterations": counted}, details)
 
 
-def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Plan | None]:
+def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Candidate | None]:
     """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before.
 
     Returns:
@@ -145,12 +145,12 @@ def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Pla
     case, cache = Case.of(varied.scenario(), varied.ends, coarsest), SolverCache()
     solver = case.solver("banded")
 
-    def solve() -> Plan | None:
+    def solve() -> Candidate | None:
         result = case.solve(solver)
-        plan = Plan(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
+        candidate = Candidate(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
         for n in finer:
-            plan = plan and neighbour(cache, plan, n, ("banded",), time.monotonic() + PATIENCE, print)
-        return plan
+            candidate = candidate and neighbour(cache, candidate, n, ("banded",), time.monotonic() + PATIENCE, print)
+        return candidate
 
     return repeat(repeats, solve)
 

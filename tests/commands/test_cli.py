@@ -246,7 +246,7 @@ def test_script_is_the_same_command_and_answers_bad_input_without_loading_the_so
     assert (run.returncode, run.stdout) == (2, "")
     timed = [line for line in run.stderr.splitlines() if line.startswith("import time:")]
     errors = [line for line in run.stderr.splitlines() if line not in timed]
-    assert errors == ["liftopt: error: table.mass = 0: must be a number from 0.05 to 50 kg (mass of the object)"]
+    assert errors == ["liftopt: error: object.mass = 0: must be a number from 0.05 to 50 kg (mass of the object)"]
     imported = {line.rpartition("|")[2].strip() for line in timed}
     assert "liftopt.commands.cli" in imported
     assert imported.isdisjoint({"numpy", "casadi", "pinocchio", "rich", "liftopt.search.solve"})

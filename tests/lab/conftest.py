@@ -21,7 +21,6 @@ from liftopt.multibody.person.human import human_chain, human_root
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
-from liftopt.scenario.schema import section
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 
@@ -117,7 +116,7 @@ def truth() -> Lift:
     recorded = 1000.0 * (world @ turn.T + SHIFT)
     return Lift(
         recording=Recording("synthetic", RATE, time, tuple(labels), recorded, "mm", "Z"),
-        mapping=section(MarkerMap).accept("", MAPPING),
+        mapping=MarkerMap.checked(MAPPING),
         mapping_dict=MAPPING,
         subject=SUBJECT,
         q=q,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,7 @@ def recorded(box_lift: Path) -> RecordedLift:
     before = hashlib.sha256(path.read_bytes()).hexdigest()
     mapping = load_marker_map("box_lift")
     lift = recorded_lift(
-        read_recording(path), replace(mapping, subject=replace(mapping.subject, mass=60.0)), Load(mass=6.0)
+        read_recording(path), mapping.changed(subject=mapping.subject.changed(mass=60.0)), Load(mass=6.0)
     )
     assert hashlib.sha256(path.read_bytes()).hexdigest() == before
     return lift

@@ -14,6 +14,7 @@ from liftopt.errors import InputError
 from liftopt.scenario.model import load_scenario
 from liftopt.storage.reader import load_result
 from liftopt.storage.result_path import result_file
+from liftopt.storage.solved_scenario import scenario_or_solved
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 
@@ -36,7 +37,7 @@ def test_folder_netcdf_and_scenario_stand_for_the_result(results: Path, name: st
 
 @pytest.mark.parametrize("name", ["", "solution.nc", "scenario.toml"])
 def test_a_result_stands_for_the_scenario_that_was_solved(results: Path, name: str) -> None:
-    heavier = load_scenario(results / "table5" / name, ["object.mass=3"])
+    heavier = scenario_or_solved(str(results / "table5" / name), ["object.mass=3"])
     assert heavier == load_scenario("table5", [*CHEAP, "object.mass=3"])
 
 
@@ -102,7 +103,7 @@ def test_what_is_no_result_is_told_with_what_was_meant(path: str, said: str) -> 
 @pytest.mark.usefixtures("results")
 def test_what_is_no_scenario_is_told_with_what_was_meant(path: str, said: str) -> None:
     with pytest.raises(InputError) as caught:
-        load_scenario(path)
+        scenario_or_solved(path)
     assert str(caught.value).startswith(f"{path}: ")
     assert str(caught.value).endswith(said)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from liftopt.scenario.placement import stand_of
 from liftopt.viz.playback import Playback, playback_of
 from liftopt.viz.scene import Cast, parts_of
+from liftopt.viz.scene_sawyer_meshes import DESCRIPTION
 from liftopt.viz.who import COLOURS
 
 CLOSURE = 2e-3  # [m]: what the motions were made with, and a millimetre between knots
@@ -81,3 +83,24 @@ def test_people_wear_different_shirts(two_people: Any) -> None:
 def test_four_agents_have_colours_that_differ() -> None:
     assert len(COLOURS) == 4
     assert min(float(np.linalg.norm(np.subtract(a, b))) for a, b in combinations(COLOURS, 2)) > 0.3
+
+
+def test_the_manufacturers_meshes_are_drawn_for_each_robot(two_robots: Any, tmp_path: Path) -> None:
+    """A description made here, of cubes."""
+    import trimesh
+
+    names = ["pedestal", "right_arm_base_link", "head", *(f"right_l{i}" for i in range(7))]
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "meshes").mkdir()
+    links = ""
+    for name in names:
+        trimesh.creation.box((0.1, 0.1, 0.1)).export(tmp_path / "meshes" / f"{name}.STL")
+        mesh = f'<mesh filename="package://sawyer_description/meshes/{name}.DAE"/>'
+        links += f'<link name="{name}"><visual><geometry>{mesh}</geometry></visual></link>'
+    (tmp_path / DESCRIPTION).write_text(f"<robot>{links}</robot>", encoding="utf-8")
+    parts = parts_of(Cast(two_robots.solution, playback_of(two_robots.solution), "/lift", sawyer=tmp_path))
+    assert len({(part.body, part.name) for part in parts}) == len(parts)
+    placed = {(part.body, part.name): part.mesh.vertices.mean(axis=0) for part in parts}
+    for name, y in (("near", -0.55), ("far", 0.55)):
+        assert {f"{name}_Q{i}" for i in range(1, 8)} <= {body for body, _ in placed}
+        np.testing.assert_allclose(placed["ground", f"{name}_pedestal"], [1.75, y, 0.915], atol=1e-9)
