@@ -9,10 +9,12 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.build import agents_of
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
-from liftopt.viz.models import base_of, grasp_frame, model_of
+from liftopt.viz.base import base_of
 
 Array = npt.NDArray[np.float64]
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
@@ -82,15 +84,16 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     zero: dict[str, Array] = {}
     joints: dict[str, tuple[str, ...]] = {}
     bases: dict[str, Array] = {}
-    for track in solution.agents:
-        model = model_of(solution, track.name)
+    for agent, track in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q = motion_between(knots, track.q, track.v, track.a, time)[0]
-        placements = _placements(model, q)
+        placements = _placements(agent, q)
         bodies |= {name: _track(list_) for name, list_ in placements.items()}
-        forces[track.name] = _force(model, track, knots, time, q)
-        zero |= {name: list_[0].homogeneous for name, list_ in _placements(model, np.zeros((1, model.nq))).items()}
-        joints[track.name] = tuple(placements)
-        bases[track.name] = base_of(model, track)
+        forces[agent.name] = _force(agent, track, knots, time, q)
+        zero |= {
+            name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
+        }
+        joints[agent.name] = tuple(placements)
+        bases[agent.name] = base_of(agent)
     held = solution.object
     pose = motion_between(knots, held.pose, held.pose_velocity, held.pose_acceleration, time)[0]
     bodies[held.name] = _track([_object_placement(row) for row in pose])
@@ -108,8 +111,9 @@ def _check(solution: Solution) -> None:
         raise InputError(name, NO_VALUE, "cannot be shown: the result's time does not run forward")
 
 
-def _placements(model: pin.Model, q: Array) -> dict[str, list[pin.SE3]]:
+def _placements(agent: Agent, q: Array) -> dict[str, list[pin.SE3]]:
     """Return T_world_joint of every joint at each row of ``q`` (K, n)."""
+    model = agent.model
     data = model.createData()
     names = list(model.names)[1:]
     placements: dict[str, list[pin.SE3]] = {name: [] for name in names}
@@ -126,8 +130,9 @@ def _object_placement(pose: Array) -> pin.SE3:
     return pin.SE3(roll @ pitch @ yaw, pose[:3])
 
 
-def _force(model: pin.Model, track: AgentTrajectory, knots: Array, time: Array, q: Array) -> ForceTrack:
-    data, frame = model.createData(), model.getFrameId(grasp_frame(track.name))
+def _force(agent: Agent, track: AgentTrajectory, knots: Array, time: Array, q: Array) -> ForceTrack:
+    model = agent.model
+    data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
     points = np.zeros((len(time), 3))
     for k, row in enumerate(q):
         pin.forwardKinematics(model, data, row)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle
+from textwrap import wrap
 
 import numpy as np
 import pinocchio as pin
@@ -11,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
 
 from liftopt.assessment.who import listed
-from liftopt.multibody.urdf import load_free_model
+from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.solution import Solution
-from liftopt.viz.models import base_of, model_of, urdf_of
+from liftopt.viz.base import base_of
 from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import BLUE, GREEN, INK, PURPLE, VERMILION, Array
@@ -30,6 +31,7 @@ ARROWS = (
     (PURPLE, "->", "pink, open head"),
 )
 HEADROOM = 0.15  # [m]
+WORDS, LINE = 160, 0.2  # that a line below the panels holds, and its height [in]
 
 
 def snapshots(lift: Lift) -> Figure:
@@ -65,8 +67,7 @@ def snapshots(lift: Lift) -> Figure:
 
 def _standing(solution: Solution) -> Array:
     """Return X of the base of every agent [m]."""
-    models = [model_of(solution, agent.name) for agent in solution.agents]
-    return np.array([base_of(*each)[0, 3] for each in zip(models, solution.agents, strict=True)])
+    return np.array([base_of(agent)[0, 3] for agent in agents_of(solution.scenario, solution.urdfs)])
 
 
 def _key_force(largest: float) -> float:
@@ -84,19 +85,25 @@ def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
         f"by {called(agents, agent)} ({words})" for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
     ]
     side = "the person's right" if are_a_pair(agents) else "the side, x to the right"
-    whose = "the hand" if are_a_pair(agents) else f"the hand of {agents[0].name}"
-    words = f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}."
-    figure.supxlabel(words, fontsize=10.5, color=INK, y=0.01)
+    whose = "the hand" if are_a_pair(agents) else f"the hand of {called(agents, agents[0])}"
+    lines = wrap(
+        f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}.",
+        WORDS,
+    )
+    old, room, at = figure.get_figheight(), LINE * (len(lines) - 1), figure.subplotpars
+    figure.set_figheight(old + room)
+    figure.subplots_adjust(top=1 - (1 - at.top) * old / (old + room), bottom=(at.bottom * old + room) / (old + room))
+    figure.supxlabel("\n".join(lines), fontsize=10.5, color=INK, y=0.01)
 
 
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
     """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
     solution = lift.dense
-    held = urdf_of(solution, solution.object.name)
+    held = object_of(solution.scenario, solution.urdfs)
     poses = np.hstack([solution.object.pose[:, :3], solution.object.quaternion])
     models = [
-        *((model_of(solution, agent.name), urdf_of(solution, agent.name)) for agent in solution.agents),
-        (load_free_model(held), held),
+        *((agent.model, agent.urdf) for agent in agents_of(solution.scenario, solution.urdfs)),
+        (held.model, held.urdf),
     ]
     motions = [*(agent.q for agent in solution.agents), poses]
     return [

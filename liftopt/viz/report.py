@@ -24,17 +24,18 @@ from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
-from liftopt.viz.who import are_a_pair, called, is_only_one
+from liftopt.viz.who import are_a_pair, is_only_one
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
-# By the kind of agent and what was found of it; {who} stands for the agent.
-HEADLINES: tuple[tuple[Kind, str, str], ...] = (
-    ("person", "person.strength", "of {who}'s strength"),
-    ("person", "person.load_share", "of the load is on {who} at most"),
-    ("person", "person.grasp_force", "on {who}'s hand at most"),
-    ("robot", "robot.torque", "of a robot joint's torque limit"),
-    ("person", "person.posture", "RULA posture score at worst; 7 is bad"),
+# By the kind of agent and what was found of it: what is written below the number, and that where there are several of
+# the kind.
+HEADLINES: tuple[tuple[Kind, str, str, str], ...] = (
+    ("person", "person.strength", "of the person's strength", "of {}'s strength"),
+    ("person", "person.load_share", "of the load is on the person at most", "of the load is on {} at most"),
+    ("person", "person.grasp_force", "on the person's hand at most", "on {}'s hand at most"),
+    ("robot", "robot.torque", "of a robot joint's torque limit", "of the torque limit of a joint of {}"),
+    ("person", "person.posture", "RULA posture score at worst; 7 is bad", "RULA posture score of {}; 7 is bad"),
 )
 
 
@@ -92,15 +93,13 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
 def _headlines(solution: Solution) -> list[Headline]:
     """Return the numbers that matter most, as the assessment has them; of what is no solution it has none."""
     agents, told = solution.agents, []
-    for kind, code, label in HEADLINES:
+    for kind, code, label, named in HEADLINES:
         for agent in (agent for agent in agents if agent.kind == kind):
             alone = is_only_one(agents, agent)
             found = (one for one in solution.assessment if one.code == code and (alone or one.agent == agent.name))
             finding = next(found, None)
             if finding is not None and finding.value is not None:
-                words = label.format(who=called(agents, agent))
-                whose = "" if alone or "{who}" in label else f"{agent.name}: "
-                told.append(Headline(_number(finding), whose + words, finding.message))
+                told.append(Headline(_number(finding), label if alone else named.format(agent.name), finding.message))
     return told
 
 

@@ -11,10 +11,11 @@ import numpy as np
 from liftopt.assessment.who import listed
 from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
+from liftopt.scenario.build import agents_of
 from liftopt.solution.finding import MATHEMATICS, Finding
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import human_curves, robot_curves
-from liftopt.viz.models import base_of, model_of
+from liftopt.viz.base import base_of
 from liftopt.viz.plots import figure_names
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_tables import joint_rows
@@ -99,7 +100,7 @@ def subject_words(finding: Finding, agents: Sequence[AgentTrajectory]) -> str:
 
 
 def team_words(solution: Solution) -> str:
-    """Return who lifts: "A man of 1.75 m and 75 kg and a Sawyer robot, 1.9 m apart"."""
+    """Return who lifts: "A man of 1.75 m and 75 kg and a Sawyer robot, 1.9 m apart,"."""
     words = []
     for agent in solution.agents:
         named = "" if is_only_one(solution.agents, agent) else f" ({agent.name})"
@@ -111,8 +112,8 @@ def team_words(solution: Solution) -> str:
             words.append(f"a {robot_of(solution.scenario, agent).model.capitalize()} robot{named}")
     text = listed(words)
     if len(solution.agents) == 2:
-        first, second = (base_of(model_of(solution, agent.name), agent)[:2, 3] for agent in solution.agents)
-        text += f", {round(float(np.hypot(*(second - first))), 6):g} m apart"
+        first, second = (base_of(agent)[:2, 3] for agent in agents_of(solution.scenario, solution.urdfs))
+        text += f", {round(float(np.hypot(*(second - first))), 6):g} m apart,"
     return text[0].upper() + text[1:]
 
 

@@ -17,7 +17,6 @@ from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario, scenario_from_dict
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -102,7 +101,6 @@ def _made(scenario: Scenario, solved: Callable[..., Any]) -> Team:
     for i, agent in enumerate(agents):
         motion = _rates(time, _followed(agent, points[:, i]))
         tracks.append(agent_trajectory(agent, *motion, forces[:, i]))
-    texts = {agent.name: agent.urdf for agent in agents} | {held.name: held.urdf}
     names = [agent.name for agent in agents]
     terms = [*names, "acceleration", "force"]
     solution = replace(
@@ -111,7 +109,7 @@ def _made(scenario: Scenario, solved: Callable[..., Any]) -> Team:
         time=time,
         agents=tuple(tracks),
         object=object_trajectory(held, x, xdot, xddot, forces.reshape(knots, -1)),
-        urdfs={urdf_files(scenario)[name]: text for name, text in texts.items()},
+        urdfs={},  # the models are written anew from the scenario
         objective_terms=dict.fromkeys(terms, 100.0),
         objective_weights=dict.fromkeys(terms, 1.0),
     )

@@ -1,4 +1,4 @@
-"""The models that a solution was solved with, and where they stand."""
+"""Where an agent stands and which way it faces, as its model has it."""
 
 from __future__ import annotations
 
@@ -6,35 +6,18 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.multibody.urdf import load_model
-from liftopt.scenario.urdf_files import urdf_files
-from liftopt.solution.solution import Solution
+from liftopt.multibody.agent import Agent
 
 Array = npt.NDArray[np.float64]
 EXACT = 9  # decimals of a placement: a URDF's angles give quarter turns with an error in the last digit
 
 
-def urdf_of(solution: Solution, name: str) -> str:
-    """Return the URDF of an agent or of the object."""
-    return solution.urdfs[urdf_files(solution.scenario)[name]]
-
-
-def model_of(solution: Solution, name: str) -> pin.Model:
-    """Return the model of an agent."""
-    return load_model(urdf_of(solution, name))
-
-
-def grasp_frame(name: str) -> str:
-    """Return the name of the frame that an agent holds at."""
-    return f"{name}_grasp"
-
-
-def base_of(model: pin.Model, agent: AgentTrajectory) -> Array:
+def base_of(agent: Agent) -> Array:
     """Return T_world_base (4, 4) of a chain of Table 2 or 3: X ahead, Z up.
 
     It is at the feet of a person, and at the base of a robot's arm, on its pedestal.
     """
+    model = agent.model
     first = model.jointPlacements[1]
     # The first of the chain's joints slides ahead along its z axis; its x axis is up.
     ahead, up = first.rotation[:, 2], first.rotation[:, 0]
