@@ -107,17 +107,18 @@ def solution() -> SimpleNamespace:
     moment = np.zeros((5, 3))
     moment[1] = [3.0, -4.0, 0.0]
     check = SimpleNamespace(name="closure", value=2e-9, limit=1e-6, unit="m", where="human at t = 0.40 s", passed=True)
+    agents = (
+        _agent("human", 10, human_force, (0.4, 0.0, 0.9)),
+        _agent("robot", 7, robot_force, (0.85, 0.0, 0.9)),
+    )
+    agents[0].ground_force, agents[0].ground_moment = ground, moment
     return SimpleNamespace(
         scenario=scenario,
         status="solved",
         solved=True,
         time=np.linspace(0.0, 2.0, 5),
-        agents=(
-            _agent("human", 10, human_force, (0.4, 0.0, 0.9)),
-            _agent("robot", 7, robot_force, (0.85, 0.0, 0.9)),
-        ),
-        ground_reaction_force=ground,
-        ground_reaction_moment=moment,
+        agents=agents,
+        persons=agents[:1],
         objective=350.0,
         objective_terms={"human": 200.0, "robot": 100.0, "acceleration": 90.0, "force": 500.0},
         objective_weights={"human": 1.0, "robot": 1.0, "acceleration": 0.5, "force": 0.01},

@@ -123,10 +123,10 @@ class Solution:
 
     @property
     def ground_reaction_force(self) -> Array:
-        """(K, 3) force of the ground on the human, world axes [N]."""
-        return self.agents[0].ground_force
+        """(K, 3) force of the ground on the first person, world axes [N]."""
+        return self.persons[0].ground_force
 
     @property
     def ground_reaction_moment(self) -> Array:
-        """(K, 3) moment of the ground on the human at the foot origin, world axes [Nm]."""
-        return self.agents[0].ground_moment
+        """(K, 3) moment of the ground on the first person at the foot origin, world axes [Nm]."""
+        return self.persons[0].ground_moment

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
+EFFORT_UNIT = "N^2 m^2 s"  # of the squared torques of an agent
+TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
 
 
 def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
@@ -57,7 +58,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
         "grasp_moment": _grasp_moment(fine),
-        "ground_reaction": _ground_reaction(fine),
+        **_ground_reactions(fine),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),
@@ -138,10 +139,19 @@ def _grasp_moment(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _ground_reaction(solution: Solution) -> dict[str, Any]:
-    force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
+def _ground_reactions(solution: Solution) -> dict[str, Any]:
+    """Return what the ground does to the first person and, where several lift, to each."""
+    found = {person.name: _ground_reaction(solution, person) for person in solution.persons}
+    first = next(iter(found.values()), None)
+    return {"ground_reaction": first} | ({"ground_reactions": found} if len(found) > 1 else {})
+
+
+def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, Any]:
+    force, moment = person.ground_force, person.ground_moment
     vertical = _peak(force[:, 2], solution.time, "N")
-    weight = solution.scenario.first("person").mass * GRAVITY
+    asked = solution.scenario.agents[person.name]
+    assert asked.kind == "person"
+    weight = asked.mass * GRAVITY
     return {
         "vertical": vertical,
         "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,
@@ -154,12 +164,12 @@ def _ground_reaction(solution: Solution) -> dict[str, Any]:
 
 
 def _objective(solution: Solution) -> dict[str, Any]:
-    terms = {}
+    terms, efforts = {}, {agent.name for agent in solution.agents}
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {
             "integral": _number(integral),
-            "unit": TERM_UNITS.get(name, ""),
+            "unit": EFFORT_UNIT if name in efforts else TERM_UNITS.get(name, ""),
             "weight": _number(weight),
             "weighted": _number(weight * integral),
         }

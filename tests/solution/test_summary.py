@@ -165,7 +165,7 @@ def test_a_load_share_of_many_knots_and_wide_figures_fits_80_columns(solution: S
         agent.q, agent.tau = np.zeros((41, agent.q.shape[1])), np.zeros((41, agent.q.shape[1]))
         agent.grasp_position = np.repeat(agent.grasp_position[:1], 41, axis=0)
         agent.grasp_force = np.tile([0.0, 0.0, 20.0 * force], (41, 1))
-    solution.ground_reaction_force = solution.ground_reaction_moment = np.zeros((41, 3))
+    solution.agents[0].ground_force = solution.agents[0].ground_moment = np.zeros((41, 3))
     text = _text(solution)
     assert max(map(len, text.splitlines())) <= 80
     assert "-50.0  -50.0  -50.0  -50.0  -50.0   -50.0    -50.0  ▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁▁" in text
