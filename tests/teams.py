@@ -96,7 +96,7 @@ def made(name: str, pattern: Solution) -> Team:
         time=time,
         agents=tuple(tracks),
         object=object_trajectory(held, x, xdot, xddot, forces.reshape(knots, -1)),
-        urdfs={},  # the models are written anew from the scenario
+        urdfs={agent.name: agent.urdf for agent in agents} | {held.name: held.urdf},
         objective_terms=dict.fromkeys(terms, 100.0),
         objective_weights=dict.fromkeys(terms, 1.0),
     )

@@ -103,9 +103,7 @@ def _sparkline(values: npt.NDArray[np.float64], ascii_only: bool) -> str:
 
 def _forces(summary: dict[str, Any]) -> Table:
     table = _table("Forces", "<", "peak", "<", "at [s]", "<")
-    grasp, first = summary["grasp_force"], summary["ground_reaction"]
-    several = summary.get("ground_reactions")
-    grounds = {f"{name}: ": one for name, one in several.items()} if several else {"": first} if first else {}
+    grasp, grounds = summary["grasp_force"], _grounds(summary)
     for agent, peak in grasp["agents"].items():
         of_limit = (
             "" if peak["peak_N"] is None else f"{peak['peak_N'] / grasp['limit_N']:.0%} of {grasp['limit_N']:g} N"
@@ -128,6 +126,16 @@ def _forces(summary: dict[str, Any]) -> Table:
         _force_row(table, "  lateral (about X)", ground["moment_lateral"], "")
         _force_row(table, "  twisting (about Z)", ground["moment_vertical"], "")
     return table
+
+
+def _grounds(summary: dict[str, Any]) -> dict[str, Any]:
+    """Return what the ground does to each person, by what comes before its name in the table."""
+    end = "ground_reaction"
+    found = {key.removesuffix(end).rstrip("_"): one for key, one in summary.items() if key.endswith(end)}
+    if len(found) < 2:
+        return found
+    first = next(name for name, agent in summary["scenario"]["agents"].items() if agent["kind"] == "person")
+    return {f"{name or first}: ": one for name, one in found.items()}
 
 
 def _force_row(table: Table, label: str, peak: dict[str, Any], remark: str) -> None:

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from liftopt.crosscheck.energy import energy_books
 from liftopt.crosscheck.mujoco_dynamics import inverse_dynamics
-from liftopt.scenario.build import object_of
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 
 
 @pytest.fixture(params=["two_people", "two_robots"])
 def lift(request: pytest.FixtureRequest, team_solution: Callable[[str], Any]) -> Solution:
-    """A lift with the texts of its models."""
-    solution, agents = team_solution(request.param)
-    files, held = urdf_files(solution.scenario), object_of(solution.scenario)
-    texts = {agent.name: agent.urdf for agent in agents} | {held.name: held.urdf}
-    found: Solution = replace(solution, urdfs={files[name]: text for name, text in texts.items()})
+    """A lift of everybody in it."""
+    found: Solution = team_solution(request.param).solution
     return found
 
 

@@ -20,7 +20,9 @@ from liftopt.scenario.build import agent_of
 @pytest.mark.parametrize("heading", [90.0, 180.0, -33.0])
 def test_where_a_person_stands_and_faces_changes_nothing(solution: Any, heading: float) -> None:
     human = solution["human"]
-    scenario = solution.scenario.replace({"human.position": [0.3, -0.2], "human.heading_deg": heading})
+    place = {"x": 0.5, "y": 0.0, "z": 1.0}  # of the object, which the measures do not ask for
+    stand = {"human.position": [0.3, -0.2], "human.heading_deg": heading}
+    scenario = solution.scenario.replace({**stand, "task.start": place, "task.end": place})
     agent, moving = agent_of(scenario, "human"), human.moving
     force = human.grasp_force @ rotation_z(np.radians(heading))[:3, :3].T
     turned = agent_trajectory(agent, human.q[:, moving], human.v[:, moving], human.a[:, moving], force)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,23 +20,18 @@ from liftopt.lab.robot.dry_run_summary import reach_to_others
 from liftopt.lab.robot.joint_trajectory import joint_trajectory
 from liftopt.lab.robot.simulated_arm import SimulatedArm
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 
 
 @pytest.fixture(scope="module")
 def people(team_solution: Callable[[str], Any]) -> Solution:
-    return _with_models(team_solution("two_people"))
+    solution: Solution = team_solution("two_people").solution
+    return solution
 
 
 @pytest.fixture(scope="module")
 def robots(team_solution: Callable[[str], Any]) -> Solution:
-    return _with_models(team_solution("two_robots"))
-
-
-def _with_models(team: Any) -> Solution:
-    files = urdf_files(team.solution.scenario)
-    solution: Solution = replace(team.solution, urdfs={files[agent.name]: agent.urdf for agent in team.agents})
+    solution: Solution = team_solution("two_robots").solution
     return solution
 
 

@@ -16,9 +16,10 @@ from liftopt.commands import sensitivity as sensitivity_command
 from liftopt.errors import InputError
 from liftopt.multibody.trajectory import limit_share
 from liftopt.scenario.model import Scenario
+from liftopt.studies.parameters import parameters_of
 from liftopt.studies.pareto import Front, Point, pareto_front
 from liftopt.studies.pareto_plot import pareto_figure
-from liftopt.studies.sensitivity import Sensitivity, Study, parameters_of
+from liftopt.studies.sensitivity import Sensitivity, Study
 from liftopt.studies.sensitivity_plot import sensitivity_figure
 from liftopt.viz.plots_style import STYLE
 
@@ -134,12 +135,12 @@ def test_parameters_are_everybodys_by_name(team_solution: Teams) -> None:
     people = {p.name: p.keys for p in parameters_of(team_solution("two_people").solution.scenario)}
     assert people["stature of anna"] == ("anna.stature",)
     assert people["body mass of ben"] == ("ben.mass",)
-    assert people["feet to feet"] == ("task.standing_distance",)
+    assert people["feet to ben"] == ("task.standing_distance",)
     assert not [name for name in people if "robot" in name]
     robots = {p.name: p.keys for p in parameters_of(team_solution("two_robots").solution.scenario)}
     assert robots["stature"] == ("human.stature",)
     assert robots["robot base height of far"] == ("far.base_height",)
-    assert robots["feet to robot"] == ("task.standing_distance",)
+    assert robots["start height"] == ("task.start.height",)
 
 
 @pytest.mark.parametrize("name", ["two_people", "two_robots"])
