@@ -1,0 +1,138 @@
+"""What the viewer's camera can look at: presets for the lift as a whole, for every agent, and for the hands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.viz.scene import Cast
+from liftopt.viz.who import are_a_pair, body_of, called, is_only_one
+
+Array = npt.NDArray[np.float64]
+Box = list[list[float]]
+# Around joints: what of a person, a robot and the hands is in view [m].
+BODY, ROBOT, HANDS = 0.25, 0.05, 0.18
+# A robot's pedestal ahead of its base, behind it and to its sides, and its head above it [m].
+AHEAD, BEHIND, ASIDE, HEAD = 0.2, 0.5, 0.35, 0.65
+WHOLE = ("three-quarter", "side", "front", "top", "hands")
+
+
+@dataclass(frozen=True)
+class View:
+    """One preset of the camera.
+
+    Attributes:
+        name: on its button.
+        title: what it shows, in words.
+        box: lowest and highest corner of what is in view, world axes [m].
+        side: (3,) from which side, world axes.
+        solid: bodies that stay solid while everything else is see-through; None where all is solid.
+    """
+
+    name: str
+    title: str
+    box: Box
+    side: list[float]
+    solid: list[str] | None = None
+
+    def plain(self) -> dict[str, object]:
+        """Return it ready for JSON."""
+        return asdict(self)
+
+
+def views_of(casts: Sequence[Cast]) -> list[View]:
+    """Return the presets for one lift, or for two that are shown together."""
+    agents = agents_in(casts)
+    boxes = {agent.name: _agent_box(casts, agent) for agent in agents}
+    whole = _plain(np.vstack(list(boxes.values())))
+    points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
+    first = next((agent for agent in agents if agent.kind == "person"), agents[0])
+    aside = any(cast.offset != casts[0].offset for cast in casts)
+    whose = f"{called(agents, first)}'s"
+    views = [
+        View(
+            "three-quarter",
+            f"from {whose} right and ahead",
+            whole,
+            _from(casts, first, (0.5, -1.0, 0.55 if aside else 0.3)),
+        ),
+        View("side", f"from {whose} right", whole, _from(casts, first, (0.0, -1.0, 0.02))),
+    ]
+    if first.kind == "person":
+        through = "the robot" if are_a_pair(agents) else "everybody else"
+        bodies = {
+            body for cast in casts for body in (*cast.playback.joints.get(first.name, ()), cast.solution.object.name)
+        }
+        views.append(
+            View(
+                "front",
+                f"straight at {whose} face, through {through}",
+                _plain(boxes[first.name]),
+                _from(casts, first, (1.0, 0.0, 0.04)),
+                sorted(bodies),
+            )
+        )
+    views.append(View("top", "from above", whole, _from(casts, first, (0.0, -0.001, 1.0))))
+    for agent in agents:
+        button = agent.kind if is_only_one(agents, agent) else agent.name
+        views.append(
+            View(
+                button if button not in WHOLE else f"agent {button}",
+                f"{called(agents, agent)}, from head to foot",
+                _plain(boxes[agent.name]),
+                _from(casts, agent, (0.75, -1.0, 0.15) if agent.kind == "person" else (0.45, 1.0, 0.2)),
+            )
+        )
+    held = "hands, gripper and object" if any(agent.kind == "robot" for agent in agents) else "hands and object"
+    return [*views, View("hands", held, _plain(np.vstack(points), HANDS), _from(casts, first, (-0.1, -1.0, 0.35)))]
+
+
+def agents_in(casts: Sequence[Cast]) -> tuple[AgentTrajectory, ...]:
+    """Return the agents of all lifts, one of each name."""
+    named = {agent.name: agent for cast in reversed(casts) for agent in cast.solution.agents}
+    order = dict.fromkeys(agent.name for cast in casts for agent in cast.solution.agents)
+    return tuple(named[name] for name in order)
+
+
+def head_of(cast: Cast, agent: AgentTrajectory) -> Array:
+    """Return the top of an agent's head (3,), in the world, as it stands upright [m]."""
+    person = agent.kind == "person"
+    up = body_of(cast.solution.scenario, agent).stature if person else HEAD
+    head = cast.playback.bases[agent.name] @ (0.0, 0.0, up, 1.0)
+    return np.asarray(head[:3] + cast.offset)
+
+
+def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
+    """Return corners (2, 3) around an agent in all lifts: where it stands, its joints and its hand."""
+    points = []
+    for cast in casts:
+        playback = cast.playback
+        if agent.name not in playback.bases:
+            continue
+        world_base, top = playback.bases[agent.name], float((head_of(cast, agent) - cast.offset)[2])
+        ahead, behind, aside = (BODY, BODY, BODY) if agent.kind == "person" else (AHEAD, BEHIND, ASIDE)
+        for x in (-behind, ahead):
+            for y in (-aside, aside):
+                points += [(world_base @ (x, y, 0.0, 1.0))[:3] * (1.0, 1.0, 0.0) + cast.offset]
+                points += [points[-1] + (0.0, 0.0, top)]
+        points += [*(playback.forces[agent.name].point + cast.offset)]
+        points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
+    room = 0.0 if agent.kind == "person" else ROBOT
+    return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
+
+
+def _plain(points: Array, room: float = 0.0) -> Box:
+    """Return lowest and highest corner of what holds points (n, 3), with some room, ready for JSON."""
+    corners: Box = np.round([points.min(axis=0) - room, points.max(axis=0) + room], 3).tolist()
+    return corners
+
+
+def _from(casts: Sequence[Cast], agent: AgentTrajectory, direction: tuple[float, float, float]) -> list[float]:
+    """Return in the world a direction that is given as an agent sees it: ahead, to its left, up."""
+    cast = next(cast for cast in casts if agent.name in cast.playback.bases)
+    side: list[float] = (cast.playback.bases[agent.name][:3, :3] @ direction).tolist()
+    return side
