@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 import liftopt
 from liftopt.assessment.joints import NEAR_LIMIT
+from liftopt.assessment.who import who_is
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
@@ -24,7 +25,7 @@ from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
-from liftopt.viz.who import are_a_pair, is_only_one
+from liftopt.viz.who import stand_opposite
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
@@ -77,9 +78,9 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),
         "means": means_words(solution.agents),
-        "paired": are_a_pair(solution.agents),
+        "paired": stand_opposite(solution.scenario),
         "about": lambda finding: subject_words(finding, solution.agents),
-        "named": [agent.name for agent in solution.agents if not is_only_one(solution.agents, agent)],
+        "named": [agent.name for agent in solution.agents if not who_is(agent, solution.agents).is_alone],
         "forces": force_rows(lift, summary),
         "near_limit": 100 * NEAR_LIMIT,
         "rula_assumptions": ASSUMPTIONS,
@@ -95,7 +96,7 @@ def _headlines(solution: Solution) -> list[Headline]:
     agents, told = solution.agents, []
     for kind, code, label, named in HEADLINES:
         for agent in (agent for agent in agents if agent.kind == kind):
-            alone = is_only_one(agents, agent)
+            alone = who_is(agent, agents).is_alone
             found = (one for one in solution.assessment if one.code == code and (alone or one.agent == agent.name))
             finding = next(found, None)
             if finding is not None and finding.value is not None:

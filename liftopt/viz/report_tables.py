@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import JointCurve
-from liftopt.viz.who import body_of
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def check_rows(summary: dict[str, Any]) -> list[dict[str, Any]]:
 
 def source_rows(solution: Solution) -> list[dict[str, Any]]:
     """Return a row a group of numbers of the people's models and source: how many, where from, how certain."""
-    bodies = dict.fromkeys(body_of(solution.scenario, person) for person in solution.persons)
+    bodies = dict.fromkeys(subject_in(solution, person.name) for person in solution.persons)
     groups: dict[tuple[str, str, str], int] = {}
     for item in (item for body in bodies for item in subject_quantities(body)):
         key = (item.group, item.source.citation, item.source.confidence)

@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.assessment.who import who_is
+from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.scene import Cast
-from liftopt.viz.who import are_a_pair, body_of, called, is_only_one
 
 Array = npt.NDArray[np.float64]
 Box = list[list[float]]
@@ -55,7 +56,7 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
     points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
     first = next((agent for agent in agents if agent.kind == "person"), agents[0])
     aside = any(cast.offset != casts[0].offset for cast in casts)
-    whose = f"{called(agents, first)}'s"
+    whose = f"{who_is(first, agents).called}'s"
     views = [
         View(
             "three-quarter",
@@ -66,7 +67,7 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
         View("side", f"from {whose} right", whole, _from(casts, first, (0.0, -1.0, 0.02))),
     ]
     if first.kind == "person":
-        through = "the robot" if are_a_pair(agents) else "everybody else"
+        through = "the robot" if [one.kind for one in agents if one is not first] == ["robot"] else "everybody else"
         bodies = {
             body for cast in casts for body in (*cast.playback.joints.get(first.name, ()), cast.solution.object.name)
         }
@@ -81,11 +82,11 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
         )
     views.append(View("top", "from above", whole, _from(casts, first, (0.0, -0.001, 1.0))))
     for agent in agents:
-        button = agent.kind if is_only_one(agents, agent) else agent.name
+        button = agent.kind if who_is(agent, agents).is_alone else agent.name
         views.append(
             View(
                 button if button not in WHOLE else f"agent {button}",
-                f"{called(agents, agent)}, from head to foot",
+                f"{who_is(agent, agents).called}, from head to foot",
                 _plain(boxes[agent.name]),
                 _clear(casts, agent, _from(casts, agent, OWN[agent.kind])),
             )
@@ -104,7 +105,7 @@ def agents_in(casts: Sequence[Cast]) -> tuple[AgentTrajectory, ...]:
 def head_of(cast: Cast, agent: AgentTrajectory) -> Array:
     """Return the top of an agent's head (3,), in the world, as it stands upright [m]."""
     person = agent.kind == "person"
-    up = body_of(cast.solution.scenario, agent).stature if person else HEAD
+    up = subject_in(cast.solution, agent.name).stature if person else HEAD
     head = cast.playback.bases[agent.name] @ (0.0, 0.0, up, 1.0)
     return np.asarray(head[:3] + cast.offset)
 
