@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from liftopt.assessment.joints import ALL_ALONG, AT_LIMIT
-from liftopt.assessment.who import Who, listed
+from liftopt.assessment.who import Who, listed, who_is
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
 from liftopt.solution.grasp_loads import shares, squeeze
@@ -65,8 +65,9 @@ def _pair(fine: Solution, person: AgentTrajectory) -> str:
     """Return a person's hand and those that it works against, as the first words of a sentence."""
     if len(fine.persons) == len(fine.robots) == 1:
         return "Hand and gripper"
-    others = [agent.name for agent in fine.agents if agent.name != person.name]
-    return f"The hand of {person.name} and {'that' if len(others) == 1 else 'those'} of {listed(others)}"
+    called = {agent.name: who_is(agent, fine.agents).called for agent in fine.agents}
+    own = called.pop(person.name)
+    return f"The hand of {own} and {'that' if len(called) == 1 else 'those'} of {listed(called.values())}"
 
 
 def share_finding(fine: Solution, person: AgentTrajectory, who: Who) -> Finding:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from liftopt.assessment.who import listed
 from liftopt.scenario.agents import Person
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import lead, partner
+from liftopt.scenario.placement import edge_heights, lead, partner
 from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -75,9 +75,10 @@ def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
 
 def _scenario(scenario: Scenario) -> list[str]:
     box, task = scenario.object, scenario.task
+    start, end = edge_heights(scenario)
     return _wrapped(
         f"{listed(_described(scenario))} lift {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) from "
-        f"{task.start.height:g} to {task.end.height:g} m (height of the edges they hold) in {scenario.duration:g} s, "
+        f"{start:g} to {end:g} m (height of the edges they hold) in {scenario.duration:g} s, "
         f"{_apart(scenario)}standing {task.standing_distance:g} m apart"
     )
 

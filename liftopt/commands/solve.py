@@ -69,10 +69,10 @@ def solve(args: argparse.Namespace) -> int:
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), progress_line() as progress:
         with _no_collection():
-            from liftopt.search.solve import lift
+            from liftopt.search.solve import solve as solve_lift
             from liftopt.storage.writer import save
 
-        solution = lift(scenario, progress=progress)
+        solution = solve_lift(scenario, progress=progress)
         progress("writing the result")
         folder = save(solution, out)
     from liftopt.commands.solved_text import solved_text

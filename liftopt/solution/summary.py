@@ -7,18 +7,19 @@ load share of a body in free fall, the objective of a start that failed) is None
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.trajectory import GRAVITY, limit_share
+from liftopt.scenario.agents import Person
 from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
-from liftopt.storage.result_folder import FILES
 
 if TYPE_CHECKING:
     from liftopt.multibody.trajectory import AgentTrajectory
@@ -27,10 +28,11 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
+AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective
+TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
 
 
-def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
+def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[str] = ()) -> dict[str, Any]:
     """Return the figures that sum up a solution; every number in it is finite or None.
 
     Peaks are taken between the knots too; of what is no solution, at the knots.
@@ -38,6 +40,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
     Args:
         solution: solved or not.
         out: folder that it was written to, if any.
+        files: that were written there, by their paths within it.
     """
     solved = bool(solution.solved)
     fine = between_knots(solution) if solved else solution
@@ -51,13 +54,13 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "remedies": [asdict(change) for change in solution.suggested_changes],
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
-        "files": [] if out is None else [str(out / name) for name in FILES],
+        "files": [] if out is None else [str(out / name) for name in files],
         "scenario": solution.scenario.to_dict(),
         "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
         "grasp_moment": _grasp_moment(fine),
-        "ground_reaction": _ground_reaction(fine),
+        **_ground_reactions(fine),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),
@@ -95,9 +98,8 @@ def load_share(solution: Solution) -> dict[str, Any]:
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
-    share = limit_share(agent)
-    asked = solution.scenario.agents[agent.name]
-    meanings = joint_meanings(asked.kind, "" if asked.kind == "person" else asked.model)
+    share, who = limit_share(agent), solution.scenario.agents[agent.name]
+    meanings = joint_meanings(agent.kind, getattr(who, "model", ""))
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
@@ -138,10 +140,18 @@ def _grasp_moment(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _ground_reaction(solution: Solution) -> dict[str, Any]:
-    force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
+def _ground_reactions(solution: Solution) -> dict[str, Any]:
+    """Return what the ground does to every person; as in solution.nc, the first one's without a name in front."""
+    return {
+        f"{person.name}_ground_reaction" if k else "ground_reaction": _ground_reaction(solution, person)
+        for k, person in enumerate(solution.persons)
+    }
+
+
+def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, Any]:
+    force, moment = person.ground_force, person.ground_moment
     vertical = _peak(force[:, 2], solution.time, "N")
-    weight = solution.scenario.first("person").mass * GRAVITY
+    weight = cast(Person, solution.scenario.agents[person.name]).mass * GRAVITY
     return {
         "vertical": vertical,
         "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,
@@ -154,12 +164,12 @@ def _ground_reaction(solution: Solution) -> dict[str, Any]:
 
 
 def _objective(solution: Solution) -> dict[str, Any]:
-    terms = {}
+    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), AGENT_UNIT) | TERM_UNITS
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {
             "integral": _number(integral),
-            "unit": TERM_UNITS.get(name, ""),
+            "unit": units.get(name, ""),
             "weight": _number(weight),
             "weighted": _number(weight * integral),
         }

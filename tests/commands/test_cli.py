@@ -31,7 +31,7 @@ class FakeLift(ModuleType):
         self.saved: list[Path] = []
         self.aside = ""  # folder within the one asked for that an iterate goes to
 
-    def lift(self, scenario: Scenario, *, progress: Any) -> SimpleNamespace:  # noqa: D102
+    def solve(self, scenario: Scenario, *, progress: Any) -> SimpleNamespace:  # noqa: D102
         assert callable(progress)
         self.asked.append(scenario)
         if self.raises is not None:
@@ -105,7 +105,7 @@ def _error_line(capsys: pytest.CaptureFixture[str]) -> str:
         (["--set", "robot.model=hal"], "robot.model = 'hal': must be"),
         (["nosuch.toml"], "nosuch.toml: no such file"),
         (["two\nlines.toml"], "two lines.toml: no such file"),
-        (["."], ".: is not a file, nor a result folder with a scenario.toml"),
+        (["."], ".: is not a file, nor a result folder with a solution.nc"),
         (["--out", "a_file"], "--out = 'a_file': cannot be written: Not a directory"),
         (["--out", "a_file/below"], "--out = 'a_file/below': cannot be written: Not a directory"),
         (["--out", "x" * 300], "cannot be written: File name too long"),
@@ -260,7 +260,7 @@ import liftopt.search.solve, liftopt.commands.solved_text, h5netcdf
 from liftopt.scenario.model import load_scenario
 from liftopt.scenario.build import agents_of, object_of
 agents_of(load_scenario()), object_of(load_scenario())
-heavy = {"matplotlib", "meshcat", "rich", "scipy.interpolate", "scipy.optimize", "trimesh", "xarray", "yourdfpy"}
+heavy = {"matplotlib", "pandas", "rich", "scipy.interpolate", "scipy.optimize", "trimesh", "xarray", "yourdfpy"}
 print(*heavy.intersection(sys.modules))
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

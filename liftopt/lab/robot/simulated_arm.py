@@ -18,14 +18,11 @@ and by 16 to 51 mm in position_w_id mode, where they do: an order of magnitude.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.lab.meant import the_robot
 from liftopt.multibody.mujoco_model import import_mujoco, spec_of
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -57,10 +54,8 @@ class SimulatedArm:
         """
         self._mujoco = import_mujoco()
         arm = the_robot(solution, robot)
-        file = urdf_files(solution.scenario)[arm.name]
-        alone = replace(solution, urdfs={file: solution.urdfs[file]})
-        spec = spec_of(alone, [name for name, moves in zip(arm.joint_names, arm.moving, strict=True) if not moves])
-        limits = arm.limits
+        locked = [name for name, moves in zip(arm.joint_names, arm.moving, strict=True) if not moves]
+        spec, limits = spec_of([solution.urdfs[arm.name]], locked), arm.limits
         for j, name in enumerate(arm.moving_joints):
             servo = spec.add_actuator(name=name, target=name, trntype=self._mujoco.mjtTrn.mjTRN_JOINT)
             servo.gainprm[0], servo.biastype = 1.0, self._mujoco.mjtBias.mjBIAS_AFFINE
