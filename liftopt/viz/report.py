@@ -16,6 +16,8 @@ from liftopt.assessment.who import who_is
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
+from liftopt.scenario.placement import edge_heights
+from liftopt.scenario.task import GraspPlace
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
@@ -59,7 +61,8 @@ def write_report(solution: Solution, file: Path, sections: Sequence[ReportSectio
 def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> str:
     """Return the report as one HTML page that needs nothing else, with sections that others add before the scenario."""
     lift = Lift.of(solution)
-    summary = summary_dict(solution)
+    summary, task = summary_dict(solution), solution.scenario.task
+    by_grasps = isinstance(task.start, GraspPlace) and isinstance(task.end, GraspPlace)
     figures = inline_figures(lift)
     for section in sections:
         figures |= section_figures(section)
@@ -78,6 +81,8 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),
         "means": means_words(solution.agents),
+        "heights": edge_heights(solution.scenario),
+        "height_of": "the edges they hold" if by_grasps else "its underside",
         "paired": stand_opposite(solution.scenario),
         "about": lambda finding: subject_words(finding, solution.agents),
         "named": [agent.name for agent in solution.agents if not who_is(agent, solution.agents).is_alone],

@@ -48,6 +48,8 @@ def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
     values = dict(_flat(scenario.to_dict()))
     rows = []
     for key, about in scenario.describe():
+        if key.startswith("task.") and key not in values:  # of the other way to say where the object is
+            continue
         what, _, allowed = about.partition(": ")
         rows.append({"key": key, "value": values.get(key, ""), "what": what, "allowed": allowed})
     return rows

@@ -17,6 +17,7 @@ from liftopt.viz.plots_data import Lift
 from liftopt.viz.who import stand_opposite
 
 PERSON = ("arm", "angles", "torques", "ground_reaction", "strength_used", "posture_score")
+TURNED = {"human.heading_deg": 90.0, "task.start.human_distance": None, "task.end.human_distance": None}
 WHOLE = ("snapshots", "grasp_forces", "object_motion")
 
 
@@ -115,10 +116,10 @@ def test_snapshots_show_everybody(lift: Lift) -> None:
 
 @pytest.mark.parametrize(
     ("changes", "opposite"),
-    [({}, True), ({"human.heading_deg": 90.0}, False), ({"robot.base.y": 0.3}, False), ({"robot.base.x": -1.5}, False)],
+    [({}, True), (TURNED, False), ({"robot.base.y": 0.3}, False), ({"robot.base.x": -1.5}, False)],
     ids=["default", "turned", "beside", "behind"],
 )
-def test_axes_are_told_by_person_and_robot_only_where_that_is_true(changes: dict[str, float], opposite: bool) -> None:
+def test_axes_are_told_by_person_and_robot_only_where_that_is_true(changes: dict[str, Any], opposite: bool) -> None:
     assert stand_opposite(load_scenario("table5", changes)) is opposite
 
 
