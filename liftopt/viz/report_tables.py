@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import JointCurve
-from liftopt.viz.who import body_of
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,8 @@ def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
     values = {key: f"{value:g}" if isinstance(value, float) else str(value) for key, value in entries}
     rows = []
     for key, about in scenario.describe():
+        if key.startswith("task.") and key not in values:  # of the other way to say where the object is
+            continue
         what, _, allowed = about.partition(": ")
         rows.append({"key": key, "value": values.get(key, ""), "what": what, "allowed": allowed})
     return rows
@@ -71,7 +73,7 @@ def check_rows(summary: dict[str, Any]) -> list[dict[str, Any]]:
 
 def source_rows(solution: Solution) -> list[dict[str, Any]]:
     """Return a row a group of numbers of the people's models and source: how many, where from, how certain."""
-    bodies = dict.fromkeys(body_of(solution.scenario, person) for person in solution.persons)
+    bodies = dict.fromkeys(subject_in(solution, person.name) for person in solution.persons)
     groups: dict[tuple[str, str, str], int] = {}
     for item in (item for body in bodies for item in subject_quantities(body)):
         key = (item.group, item.source.citation, item.source.confidence)
