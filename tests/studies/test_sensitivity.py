@@ -23,7 +23,7 @@ from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.solve import solve
 from liftopt.studies.parameters import Parameter, changed, parameters_of
-from liftopt.studies.sensitivity import Study, figures, study
+from liftopt.studies.sensitivity import SensitivityStudy, figures, study
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
 PARAMETERS = parameters_of(load_scenario())
@@ -48,7 +48,7 @@ def candidate(replanner: Replanner) -> Candidate:
 
 
 @pytest.fixture(scope="module")
-def near(candidate: Candidate, cache: SolverCache) -> Study:
+def near(candidate: Candidate, cache: SolverCache) -> SensitivityStudy:
     return study(candidate, cache)
 
 
@@ -94,7 +94,9 @@ def test_slopes_of_small_changes_are_those_of_the_optimality_conditions(
                 assert s.slopes[name] == pytest.approx(expected[name], abs=5e-3 * largest), (s.parameter.name, name)
 
 
-def test_slopes_are_those_of_the_lift_solved_again(near: Study, candidate: Candidate, replanner: Replanner) -> None:
+def test_slopes_are_those_of_the_lift_solved_again(
+    near: SensitivityStudy, candidate: Candidate, replanner: Replanner
+) -> None:
     """At half the change, where the promise is at most a tenth off, or next to nothing."""
     assert [s.parameter for s in near.sensitivities] == list(PARAMETERS)
     assert sum(s.is_reliable for s in near.sensitivities) >= 8
@@ -111,13 +113,13 @@ def test_slopes_are_those_of_the_lift_solved_again(near: Study, candidate: Candi
             assert s.slopes[name] * s.change == pytest.approx(half, rel=0.12, abs=0.0025 * whole), (s.parameter, name)
 
 
-def test_objective_slopes_by_solving_again_and_by_envelope_agree(near: Study) -> None:
+def test_objective_slopes_by_solving_again_and_by_envelope_agree(near: SensitivityStudy) -> None:
     """The envelope theorem gives the slope at the optimum, so they differ by what the objective bends."""
     for s in filter(lambda s: s.is_reliable, near.sensitivities):
         assert s.slopes["objective"] == pytest.approx(s.envelope, rel=0.05, abs=0.002 * near.figures["objective"])
 
 
-def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: Study, candidate: Candidate) -> None:
+def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: SensitivityStudy, candidate: Candidate) -> None:
     """By the definition, at ten times the knots; one limit of a person's joint is up to twice the other."""
     for agent in candidate.at(
         np.linspace(0.0, candidate.problem.task.duration, 10 * candidate.spline.intervals + 1)
@@ -206,7 +208,7 @@ def test_what_never_is_in_proportion_is_marked_with_the_reason(
     assert any(line.startswith("  duration +0.1 s: effort human") for line in lines)
 
 
-def test_shares_sum_to_one_whatever_changes(near: Study) -> None:
+def test_shares_sum_to_one_whatever_changes(near: SensitivityStudy) -> None:
     assert near.figures["share human"] + near.figures["share robot"] == pytest.approx(1.0)
     for s in near.sensitivities:
         assert s.slopes["share human"] == pytest.approx(-s.slopes["share robot"], abs=1e-6)
@@ -234,7 +236,7 @@ def test_command_tells_writes_and_takes_a_result(tmp_path: Path, capsys: pytest.
     assert "object mass" in (tmp_path / "bars.svg").read_text(encoding="utf-8")
 
 
-def test_json_holds_every_slope(near: Study) -> None:
+def test_json_holds_every_slope(near: SensitivityStudy) -> None:
     found = json.loads(json.dumps(study_dict(near), allow_nan=False))
     mass = next(p for p in found["parameters"] if p["keys"] == ["human.mass"])
     assert mass["slopes"].keys() == found["figures"].keys()
