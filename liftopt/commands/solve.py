@@ -14,9 +14,15 @@ from liftopt.commands.exit_status import DONE, NOT_SOLVED
 from liftopt.commands.terminal import progress_line, write, write_error
 from liftopt.errors import InputError
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import load_scenario
+from liftopt.scenario.listing import DEFAULT_TEAM, describe
+from liftopt.scenario.model import Scenario
 from liftopt.storage.result_folder import in_the_way
 from liftopt.storage.solved_scenario import scenario_or_solved
+
+SCENARIO_HELP = """keys of a scenario, for --set, with what is allowed and the default. An agent is addressed by the
+name that the scenario gives it, here human and robot; in a TOML file its keys stand in [agents.human] and
+[agents.robot], and schema = 2 before all. table.* is object.*:
+"""
 
 
 def add_solve_parser(commands: Any) -> None:
@@ -87,8 +93,8 @@ def solve(args: argparse.Namespace) -> int:
 
 
 def _scenario_help() -> str:
-    lines = [f"  {key}\n      {what}" for key, what in load_scenario().describe()]
-    return "keys of a scenario, for a TOML file and for --set:\n" + "\n".join(lines)
+    lines = [f"  {key}\n      {what}" for key, what in describe(Scenario, DEFAULT_TEAM)]
+    return SCENARIO_HELP + "\n".join(lines)
 
 
 @contextmanager

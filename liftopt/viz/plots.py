@@ -10,7 +10,7 @@ from pathlib import Path
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from liftopt.assessment.who import listed
+from liftopt.assessment.who import listed, who_is
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
 from liftopt.multibody.trajectory import AgentTrajectory
@@ -22,7 +22,6 @@ from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motio
 from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, robot_angles, robot_torques
 from liftopt.viz.plots_snapshots import snapshots
 from liftopt.viz.plots_style import STYLE, head
-from liftopt.viz.who import are_a_pair, called, is_only_one
 
 PNG_DPI = 200
 
@@ -140,7 +139,7 @@ def plots_of(lift: Lift) -> tuple[Plot, ...]:
     """Return the plots of a lift: those of the lift as a whole, and those of everybody in it."""
     plots: list[Plot] = []
     agents = lift.dense.agents
-    everybody = "person and robot" if are_a_pair(agents) else listed([agent.name for agent in agents])
+    everybody = listed(who_is(agent, agents).label for agent in agents)
     for plot in PLOTS:
         if isinstance(plot, AgentPlot):
             plots += [_of(plot, agent, lift) for agent in agents if agent.kind == plot.kind]
@@ -151,14 +150,14 @@ def plots_of(lift: Lift) -> tuple[Plot, ...]:
 
 def figure_names(agents: Sequence[AgentTrajectory], agent: AgentTrajectory) -> dict[str, str]:
     """Return the names of an agent's plots by what they show, ``"angles"``."""
-    alone, plots = is_only_one(agents, agent), [plot for plot in PLOTS if isinstance(plot, AgentPlot)]
+    alone, plots = who_is(agent, agents).is_alone, [plot for plot in PLOTS if isinstance(plot, AgentPlot)]
     return {plot.what: plot.name if alone else f"{agent.name}_{plot.what}" for plot in plots if plot.kind == agent.kind}
 
 
 def _of(plot: AgentPlot, agent: AgentTrajectory, lift: Lift) -> Plot:
     agents = lift.dense.agents
-    name, alone = figure_names(agents, agent)[plot.what], is_only_one(agents, agent)
-    caption = plot.caption.format(who=called(agents, agent))
+    name, alone = figure_names(agents, agent)[plot.what], who_is(agent, agents).is_alone
+    caption = plot.caption.format(who=who_is(agent, agents).called)
 
     def draw(lift: Lift) -> Figure:
         return plot.draw(lift, lift.dense[agent.name])

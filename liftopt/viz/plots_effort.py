@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from liftopt.assessment.joints import NEAR_LIMIT
+from liftopt.assessment.who import who_is
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.anatomy import ANATOMY
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
-from liftopt.viz.who import called
 
 ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
 
@@ -38,7 +38,7 @@ def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
             )
     axes.text(103.5, -0.25, "peak", va="bottom", fontsize=7.5, color=INK)
     figure.colorbar(image, cax=axes.inset_axes((1.16, 0.0, 0.03, 1.0)), label="strength used [%]")
-    axes.set_title(f"Strength used by each joint of {called(solution.agents, agent)}")
+    axes.set_title(f"Strength used by each joint of {who_is(agent, solution.agents).called}")
     time_axes(grid, float(solution.time[-1]))
     return figure
 

@@ -6,11 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from liftopt.assessment.who import who_is
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.grasp_loads import shares
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes
-from liftopt.viz.who import are_a_pair, called
+from liftopt.viz.who import stand_opposite
 
 # The axes of the world as a person and a robot see them who stand opposite each other, and for any others.
 PAIRED = ("x, towards the robot", "y, to the person's left", "z, up")
@@ -58,9 +59,9 @@ def ground_reaction(lift: Lift, agent: AgentTrajectory) -> Figure:
     for i, (axis, line) in enumerate(zip("xyz", LINES, strict=False)):
         extra = f" less {weight:.0f} N at rest" if axis == "z" else ""
         draw(force, solution.time, change[:, i], line, axis + extra, lift.factor)
-        label = about[i] if are_a_pair(solution.agents) else about[i][:7]
+        label = about[i] if stand_opposite(solution.scenario) else about[i][:7]
         draw(moment, solution.time, agent.ground_moment[:, i], line, label, lift.factor)
-    force.set(title=f"Ground reaction force on {called(solution.agents, agent)}", ylabel="force [N]")
+    force.set(title=f"Ground reaction force on {who_is(agent, solution.agents).called}", ylabel="force [N]")
     moment.set(title="Ground reaction moment at the feet", ylabel="moment [Nm]")
     for axes in (force, moment):
         axes.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
@@ -76,7 +77,7 @@ def object_motion(lift: Lift) -> Figure:
     height, turn, speed = (line[0] for line in grid)
     draw(height, solution.time, pose[:, 2], LINES[0], knots=lift.factor)
     height.set(title=f"Height of the {solution.object.name}'s centre of mass", ylabel="height of centre [m]")
-    limits, paired = solution.scenario.limits, are_a_pair(solution.agents)
+    limits, paired = solution.scenario.limits, stand_opposite(solution.scenario)
     down, turned = ("the robot's side down", "to the person's left") if paired else ("the x side down", "from x to y")
     for column, line, name, limit in (
         (4, LINES[0], f"pitch, + {down}", limits.table_pitch_deg),
@@ -103,7 +104,7 @@ def _moments(axes: Axes, lift: Lift, agents: list[AgentTrajectory]) -> None:
 
 def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> None:
     time, agents = lift.dense.time, lift.dense.agents
-    labels = PAIRED if are_a_pair(agents) else COMPONENTS
+    labels = PAIRED if stand_opposite(lift.dense.scenario) else COMPONENTS
     for values, line, label in zip(agent.grasp_force.T, LINES, labels, strict=False):
         draw(axes, time, values, line, label, lift.factor)
     magnitude = np.linalg.norm(agent.grasp_force, axis=1)
@@ -112,7 +113,7 @@ def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> N
     if magnitude.max() > 0.6 * cap:
         axes.axhline(cap, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)))
     axes.set_title(
-        f"Force of {called(agents, agent)} on the {lift.dense.object.name}: "
+        f"Force of {who_is(agent, agents).called} on the {lift.dense.object.name}: "
         f"at most {magnitude.max():.0f} N (cap {cap:g} N)"
     )
     axes.set_ylabel("force [N]")

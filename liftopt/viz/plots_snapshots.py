@@ -11,14 +11,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
 
-from liftopt.assessment.who import listed
+from liftopt.assessment.who import listed, who_is
+from liftopt.ergonomics.lift import subject_in
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.solution import Solution
 from liftopt.viz.base import base_of
 from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import BLUE, GREEN, INK, PURPLE, VERMILION, Array
-from liftopt.viz.who import are_a_pair, body_of, called
+from liftopt.viz.who import stand_opposite
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
 KEY_LENGTH, LONGEST = 0.2, 0.6  # of the arrow that the key shows, and of any [m]
@@ -58,7 +59,7 @@ def snapshots(lift: Lift) -> Figure:
         axes.spines[["left", "bottom"]].set_visible(False)
         axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
     ahead = np.concatenate([agent.grasp_position[:, 0] for agent in solution.agents] + [_standing(solution)])
-    tall = [body_of(solution.scenario, person).stature for person in solution.persons]
+    tall = [subject_in(solution, person.name).stature for person in solution.persons]
     panels[0].set_xlim(float(ahead.min()) - 0.35, float(ahead.max()) + 0.4)
     panels[0].set_ylim(-0.16, max(1.7, *tall, 0.0) + HEADROOM)
     _key(figure, panels[0], key, solution)
@@ -82,10 +83,11 @@ def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
     axes.text(left + length + 0.05, -0.1, f"{force:g} N", va="center", fontsize=10, color=INK)
     agents = solution.agents
     arrows = [
-        f"by {called(agents, agent)} ({words})" for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
+        f"by {who_is(agent, agents).called} ({words})"
+        for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
     ]
-    side = "the person's right" if are_a_pair(agents) else "the side, x to the right"
-    whose = "the hand" if are_a_pair(agents) else f"the hand of {called(agents, agents[0])}"
+    side = "the person's right" if stand_opposite(solution.scenario) else "the side, x to the right"
+    whose = "the hand" if stand_opposite(solution.scenario) else f"the hand of {who_is(agents[0], agents).called}"
     lines = wrap(
         f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}.",
         WORDS,

@@ -12,9 +12,12 @@ from markupsafe import Markup
 
 import liftopt
 from liftopt.assessment.joints import NEAR_LIMIT
+from liftopt.assessment.who import who_is
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
+from liftopt.scenario.placement import edge_heights
+from liftopt.scenario.task import GraspPlace
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
@@ -24,7 +27,7 @@ from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
-from liftopt.viz.who import are_a_pair, is_only_one
+from liftopt.viz.who import stand_opposite
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
@@ -58,7 +61,8 @@ def write_report(solution: Solution, file: Path, sections: Sequence[ReportSectio
 def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> str:
     """Return the report as one HTML page that needs nothing else, with sections that others add before the scenario."""
     lift = Lift.of(solution)
-    summary = summary_dict(solution)
+    summary, task = summary_dict(solution), solution.scenario.task
+    by_grasps = isinstance(task.start, GraspPlace) and isinstance(task.end, GraspPlace)
     figures = inline_figures(lift)
     for section in sections:
         figures |= section_figures(section)
@@ -77,9 +81,11 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),
         "means": means_words(solution.agents),
-        "paired": are_a_pair(solution.agents),
+        "heights": edge_heights(solution.scenario),
+        "height_of": "the edges they hold" if by_grasps else "its underside",
+        "paired": stand_opposite(solution.scenario),
         "about": lambda finding: subject_words(finding, solution.agents),
-        "named": [agent.name for agent in solution.agents if not is_only_one(solution.agents, agent)],
+        "named": [agent.name for agent in solution.agents if not who_is(agent, solution.agents).is_alone],
         "forces": force_rows(lift, summary),
         "near_limit": 100 * NEAR_LIMIT,
         "rula_assumptions": ASSUMPTIONS,
@@ -95,7 +101,7 @@ def _headlines(solution: Solution) -> list[Headline]:
     agents, told = solution.agents, []
     for kind, code, label, named in HEADLINES:
         for agent in (agent for agent in agents if agent.kind == kind):
-            alone = is_only_one(agents, agent)
+            alone = who_is(agent, agents).is_alone
             found = (one for one in solution.assessment if one.code == code and (alone or one.agent == agent.name))
             finding = next(found, None)
             if finding is not None and finding.value is not None:

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.assessment.who import listed
+from liftopt.assessment.who import listed, who_is
+from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.scenario.build import agents_of
@@ -19,7 +20,7 @@ from liftopt.viz.base import base_of
 from liftopt.viz.plots import figure_names
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_tables import joint_rows
-from liftopt.viz.who import body_of, called, is_only_one, robot_of
+from liftopt.viz.who import robot_of
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Reported:
 def reported(lift: Lift, agent: AgentTrajectory) -> Reported:
     """Return what the report tells of one agent."""
     solution = lift.dense
-    agents, alone, person = solution.agents, is_only_one(solution.agents, agent), agent.kind == "person"
+    agents, alone, person = solution.agents, who_is(agent, solution.agents).is_alone, agent.kind == "person"
     curves = human_curves(agent) if person else robot_curves(agent, robot_of(solution.scenario, agent).model)
     return Reported(
         address="" if alone else f"-{agent.name}",
@@ -56,7 +57,7 @@ def reported(lift: Lift, agent: AgentTrajectory) -> Reported:
         joints=joint_rows(curves, solution),
         figures=figure_names(agents, agent),
         labels={curve.joint: curve.label for curve in curves},
-        sex=body_of(solution.scenario, agent).sex if person else "",
+        sex=subject_in(solution, agent.name).sex if person else "",
         ergonomics=ergonomics_of(solution, agent) if person else None,
     )
 
@@ -68,15 +69,15 @@ def force_rows(lift: Lift, summary: dict[str, Any]) -> list[dict[str, str]]:
         share, force = summary["load_share"]["agents"][agent.name], forces["agents"][agent.name]
         part = "\N{EM DASH}" if share["min"] is None else f"{100 * share['min']:.0f} to {100 * share['max']:.0f} %"
         size = f"{force['peak_N']:.1f} N (cap {forces['limit_N']:g} N)"
-        rows.append(_row(called(agents, agent).removeprefix("the "), part, size, force["at_s"]))
+        rows.append(_row(who_is(agent, agents).called.removeprefix("the "), part, size, force["at_s"]))
     if "squeeze" in forces:
         squeeze = forces["squeeze"]
         rows.append(_row("squeeze between the grasps (+ presses)", "", f"{squeeze['peak_N']:+.1f} N", squeeze["at_s"]))
     solution = lift.dense if summary["solved"] else lift.knots
     for person in solution.persons:
         title, weight = (
-            f"ground reaction on {called(agents, person)}",
-            body_of(solution.scenario, person).mass * GRAVITY,
+            f"ground reaction on {who_is(person, agents).called}",
+            subject_in(solution, person.name).mass * GRAVITY,
         )
         vertical, horizontal = person.ground_force[:, 2], np.linalg.norm(person.ground_force[:, :2], axis=1)
         at = int(np.argmax(np.abs(vertical)))
@@ -94,7 +95,7 @@ def _row(name: str, share: str, force: str, at: float) -> dict[str, str]:
 def subject_words(finding: Finding, agents: Sequence[AgentTrajectory]) -> str:
     """Return what a finding is about: ``"person"``, ``"solve"``, or a name where there are several of a kind."""
     for agent in agents:
-        if agent.name == finding.agent and not is_only_one(agents, agent):
+        if agent.name == finding.agent and not who_is(agent, agents).is_alone:
             return agent.name
     return "solve" if finding.subject == MATHEMATICS else finding.subject
 
@@ -103,9 +104,9 @@ def team_words(solution: Solution) -> str:
     """Return who lifts: "A man of 1.75 m and 75 kg and a Sawyer robot, 1.9 m apart,"."""
     words = []
     for agent in solution.agents:
-        named = "" if is_only_one(solution.agents, agent) else f" ({agent.name})"
+        named = "" if who_is(agent, solution.agents).is_alone else f" ({agent.name})"
         if agent.kind == "person":
-            body = body_of(solution.scenario, agent)
+            body = subject_in(solution, agent.name)
             kind = "man" if body.sex == "male" else "woman"
             words.append(f"a {kind} of {body.stature:.2f} m and {body.mass:g} kg{named}")
         else:
@@ -121,6 +122,6 @@ def means_words(agents: Sequence[AgentTrajectory]) -> str:
     """Return with what they hold: "the person with the right hand, the robot with its gripper"."""
     told = {}
     for agent in agents:
-        word = "the" if is_only_one(agents, agent) else "each"
+        word = "the" if who_is(agent, agents).is_alone else "each"
         told[agent.kind] = f"{word} {agent.kind} with {'the right hand' if agent.kind == 'person' else 'its gripper'}"
     return ", ".join(told.values())

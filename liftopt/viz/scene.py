@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.assessment.who import who_is
+from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.dh import translation
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
@@ -20,7 +22,7 @@ from liftopt.viz.scene_person import SHIRT, person_parts
 from liftopt.viz.scene_sawyer import gripper_parts, sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
-from liftopt.viz.who import body_of, colour_of, is_only_one, robot_of
+from liftopt.viz.who import colour_of, robot_of
 
 Array = npt.NDArray[np.float64]
 WOOD: Colour = (0.78, 0.60, 0.38)
@@ -117,13 +119,13 @@ def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
     """Return the parts of one agent, where it stands."""
     solution, world_base = cast.solution, cast.playback.bases[agent.name]
     if agent.kind == "person":
-        figure = person_parts(agent.name, body_of(solution.scenario, agent), _shirt(cast, agent))
+        figure = person_parts(agent.name, subject_in(solution, agent.name), _shirt(cast, agent))
         return [part.placed(world_base) for part in figure]
     if cast.sawyer is None:
         arm = sawyer_parts(agent.name, world_base)
     else:
         arm = sawyer_mesh_parts(cast.sawyer, agent.name, world_base)
-    if not is_only_one(solution.agents, agent):  # on the ground each needs names of its own
+    if not who_is(agent, solution.agents).is_alone:  # on the ground each needs names of its own
         arm = [replace(part, name=f"{agent.name}_{part.name}") if part.body == GROUND else part for part in arm]
     return [*arm, *gripper_parts(agent.name, world_base, robot_of(solution.scenario, agent).tool.length)]
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from liftopt.assessment.who import who_is
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz.playback import playback_of
@@ -22,11 +23,12 @@ from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_part import Colour
 from liftopt.viz.scene_stage import stage_commands
 from liftopt.viz.viewer_views import agents_in, head_of, views_of
-from liftopt.viz.who import colour_of, is_only_one
+from liftopt.viz.who import colour_of
 
 LONGEST_ARROW = 0.40  # [m]: of the largest force shown
 APART = 2.2  # [m] between two lifts side by side, along Y
 SECOND_SHIRT: Colour = (0.10, 0.52, 0.38)
+WORDS = {"person": "human", "robot": "robot"}
 ABOVE_HEAD = 0.10  # [m]: of the name of a lift
 
 
@@ -109,11 +111,11 @@ def _facts(cast: Cast, name: str) -> dict[str, Any]:
 
 def _agents(casts: Sequence[Cast]) -> list[dict[str, str]]:
     """Return name, colour and words of everybody whose force is shown."""
-    agents, listed = agents_in(casts), []
+    agents, rows = agents_in(casts), []
     for agent in agents:
-        who = agent.name if not is_only_one(agents, agent) else "the human" if agent.kind == "person" else "the robot"
-        listed.append({"name": agent.name, "who": who, "colour": _hex(colour_of(agents, agent))})
-    return listed
+        who = f"the {WORDS[agent.kind]}" if who_is(agent, agents).is_alone else agent.name
+        rows.append({"name": agent.name, "who": who, "colour": _hex(colour_of(agents, agent))})
+    return rows
 
 
 def _labels(casts: Sequence[Cast]) -> list[dict[str, Any]]:
@@ -125,7 +127,7 @@ def _labels(casts: Sequence[Cast]) -> list[dict[str, Any]]:
             first = next(iter(cast.solution.persons), agents[0])
             labels.append(_label(cast, first, name + (" (ghost)" if cast.ghost else ""), cast.colour))
         for agent in agents:
-            if not is_only_one(agents, agent):
+            if not who_is(agent, agents).is_alone:
                 labels.append(_label(cast, agent, agent.name, colour_of(agents, agent)))
     return labels
 

@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.assessment.who import who_is
+from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.scene import Cast
-from liftopt.viz.who import are_a_pair, body_of, called, is_only_one
 
 Array = npt.NDArray[np.float64]
 Box = list[list[float]]
@@ -18,6 +19,9 @@ Box = list[list[float]]
 BODY, ROBOT, HANDS = 0.25, 0.05, 0.18
 # A robot's pedestal ahead of its base, behind it and to its sides, and its head above it [m].
 AHEAD, BEHIND, ASIDE, HEAD = 0.2, 0.5, 0.35, 0.65
+# From where an agent is seen in its own preset: ahead of it, to its left, up.
+OWN = {"person": (0.75, -1.0, 0.15), "robot": (0.45, 1.0, 0.2)}
+CLEARER = 0.1  # rad: as much more room on the other side is worth going there
 WHOLE = ("three-quarter", "side", "front", "top", "hands")
 
 
@@ -52,7 +56,7 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
     points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
     first = next((agent for agent in agents if agent.kind == "person"), agents[0])
     aside = any(cast.offset != casts[0].offset for cast in casts)
-    whose = f"{called(agents, first)}'s"
+    whose = f"{who_is(first, agents).called}'s"
     views = [
         View(
             "three-quarter",
@@ -63,7 +67,7 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
         View("side", f"from {whose} right", whole, _from(casts, first, (0.0, -1.0, 0.02))),
     ]
     if first.kind == "person":
-        through = "the robot" if are_a_pair(agents) else "everybody else"
+        through = "the robot" if [one.kind for one in agents if one is not first] == ["robot"] else "everybody else"
         bodies = {
             body for cast in casts for body in (*cast.playback.joints.get(first.name, ()), cast.solution.object.name)
         }
@@ -78,13 +82,13 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
         )
     views.append(View("top", "from above", whole, _from(casts, first, (0.0, -0.001, 1.0))))
     for agent in agents:
-        button = agent.kind if is_only_one(agents, agent) else agent.name
+        button = agent.kind if who_is(agent, agents).is_alone else agent.name
         views.append(
             View(
                 button if button not in WHOLE else f"agent {button}",
-                f"{called(agents, agent)}, from head to foot",
+                f"{who_is(agent, agents).called}, from head to foot",
                 _plain(boxes[agent.name]),
-                _from(casts, agent, (0.75, -1.0, 0.15) if agent.kind == "person" else (0.45, 1.0, 0.2)),
+                _clear(casts, agent, _from(casts, agent, OWN[agent.kind])),
             )
         )
     held = "hands, gripper and object" if any(agent.kind == "robot" for agent in agents) else "hands and object"
@@ -101,9 +105,24 @@ def agents_in(casts: Sequence[Cast]) -> tuple[AgentTrajectory, ...]:
 def head_of(cast: Cast, agent: AgentTrajectory) -> Array:
     """Return the top of an agent's head (3,), in the world, as it stands upright [m]."""
     person = agent.kind == "person"
-    up = body_of(cast.solution.scenario, agent).stature if person else HEAD
+    up = subject_in(cast.solution, agent.name).stature if person else HEAD
     head = cast.playback.bases[agent.name] @ (0.0, 0.0, up, 1.0)
     return np.asarray(head[:3] + cast.offset)
+
+
+def _clear(casts: Sequence[Cast], agent: AgentTrajectory, side: list[float]) -> list[float]:
+    """Return the side (3,) that an agent is seen from, or its mirror image where others stand less in the way."""
+    cast = next(cast for cast in casts if agent.name in cast.playback.bases)
+    base = cast.playback.bases[agent.name]
+    others = [other[:2, 3] - base[:2, 3] for name, other in cast.playback.bases.items() if name != agent.name]
+    mirrored: list[float] = (base[:3, :3] @ (base[:3, :3].T @ side * (1.0, -1.0, 1.0))).tolist()
+    one, other = (min((_angle(np.array(at[:2]), way) for way in others), default=0.0) for at in (side, mirrored))
+    return mirrored if other > one + CLEARER else side
+
+
+def _angle(a: Array, b: Array) -> float:
+    """Return the angle between two directions (2,) [rad]."""
+    return float(abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
 
 
 def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:

@@ -90,10 +90,13 @@ function make_camera(viewer, data, element) {
     place_names();
   }
 
-  // Names stand above the heads; where two would cover each other, the later one goes higher.
+  // Names stand above the heads; where two would cover each other, the later one goes higher, and none lies half under
+  // a panel.
   function place_names() {
+    if (!data.labels.length) return;
     camera.updateMatrixWorld();
     const placed = [];
+    const panels = ["facts", "views", "bar"].map((id) => element(id).getBoundingClientRect());
     [...element("names").children].forEach((name, i) => {
       const at = new MeshCat.THREE.Vector3(...turned(data.labels[i].at)).project(camera);
       const box = { width: name.offsetWidth, height: name.offsetHeight };
@@ -107,7 +110,9 @@ function make_camera(viewer, data, element) {
         && Math.abs(other.top - box.top) < box.height + 2;
       for (let other; (other = placed.find(covers)); ) box.top = other.top - box.height - 3;
       placed.push(box);
-      name.style.visibility = at.z < 1 ? "visible" : "hidden";
+      const under = panels.some((panel) => panel.left < box.left + box.width && box.left < panel.right
+        && panel.top < box.top + box.height && box.top < panel.bottom);
+      name.style.visibility = at.z < 1 && !under ? "visible" : "hidden";
       name.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;
     });
   }

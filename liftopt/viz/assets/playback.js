@@ -40,7 +40,7 @@
     viewer.scene.traverse((object) => {
       if (object.isMesh) object.receiveShadow = object.parent.name === "floor";
       if (!object.isDirectionalLight) return;
-      const reach = 2.2 + Math.hypot(...data.views[0].box[1]) / 2;
+      const reach = 2.2 + Math.max(...data.views[0].box.map((corner) => Math.hypot(...corner))) / 2;
       Object.assign(object.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, far: 20 });
       object.shadow.mapSize.set(1024, 1024);
       object.shadow.bias = -0.002;

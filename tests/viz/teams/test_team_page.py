@@ -51,6 +51,13 @@ def test_a_preset_of_an_agent_faces_it(two_people: Any) -> None:
     np.testing.assert_allclose(sides["ben"], sides["anna"] * [-1, -1, 1], atol=1e-9)
 
 
+def test_a_preset_looks_past_those_who_stand_beside(two_robots: Any) -> None:
+    """Both robots are seen from ahead and from outside, where the other one is behind and not before them."""
+    sides = {view["name"]: view["side"] for view in _data(playback_page(two_robots.solution))["views"]}
+    np.testing.assert_allclose(sides["near"], [-0.45, -1.0, 0.2], atol=1e-9)
+    np.testing.assert_allclose(sides["far"], [-0.45, 1.0, 0.2], atol=1e-9)
+
+
 def test_everything_that_an_agent_moves_is_in_its_preset(team: Any) -> None:
     views = {view["name"]: view for view in _data(playback_page(team.solution))["views"]}
     for agent, track in zip(team.agents, team.solution.agents, strict=True):

@@ -10,11 +10,14 @@ import pytest
 from matplotlib.figure import Figure
 
 from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.scenario.model import load_scenario
 from liftopt.solution.grasp_loads import shares
 from liftopt.viz.plots import drawn, plots_of, write_plots
 from liftopt.viz.plots_data import Lift
+from liftopt.viz.who import stand_opposite
 
 PERSON = ("arm", "angles", "torques", "ground_reaction", "strength_used", "posture_score")
+TURNED = {"human.heading_deg": 90.0, "task.start.human_distance": None, "task.end.human_distance": None}
 WHOLE = ("snapshots", "grasp_forces", "object_motion")
 
 
@@ -109,3 +112,17 @@ def test_snapshots_show_everybody(lift: Lift) -> None:
             assert np.any((np.abs(shapes[:, 0] - x) < 0.25) & (shapes[:, 1] < 0.05))
     for agent in lift.dense.agents:
         assert f"by {'the person' if agent.name == 'human' else agent.name} (" in words
+
+
+@pytest.mark.parametrize(
+    ("changes", "opposite"),
+    [({}, True), (TURNED, False), ({"robot.base.y": 0.3}, False), ({"robot.base.x": -1.5}, False)],
+    ids=["default", "turned", "beside", "behind"],
+)
+def test_axes_are_told_by_person_and_robot_only_where_that_is_true(changes: dict[str, Any], opposite: bool) -> None:
+    assert stand_opposite(load_scenario("table5", changes)) is opposite
+
+
+def test_axes_of_other_teams_are_told_by_letters(two_people: Any, two_robots: Any) -> None:
+    assert not stand_opposite(two_people.solution.scenario)
+    assert not stand_opposite(two_robots.solution.scenario)
