@@ -109,18 +109,17 @@ def table(study: SensitivityStudy) -> str:
     told = {agent.name: who_is(agent, agents) for agent in agents}
     now, bearing = study.figures, bearers(study)
     efforts = ", ".join(f"of {who.called} {now[f'effort {name}']:.4g}" for name, who in told.items())
-    first, *others = (f"{told[name].called} {100 * now[f'share {name}']:.1f} %" for name in bearing)
+    borne = [f"{100 * now[f'share {name}']:.1f} %" for name in bearing]
+    others = [f"{told[name].called} {share}" for name, share in zip(bearing[1:], borne[1:], strict=True)]
+    limits = [f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest]
     lines = [
         f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} N2 m2 s; "
         f"{told[bearing[0]].called} bears",
-        ", ".join([first.removeprefix(f"{told[bearing[0]].called} "), *others])
-        + ". Nearest to their limits: "
-        + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest)
-        + ".",
+        f"{', '.join([borne[0], *others])}. Nearest to their limits: {' and '.join(limits)}.",
         "",
     ]
     columns = _columns(study)
-    name = max(17, *(len(s.parameter.name) for s in study.sensitivities), 0)
+    name = max([17, *(len(s.parameter.name) for s in study.sensitivities)])
     groups = {column.group: [one for one in columns if one.group == column.group] for column in columns}
     head = [f"{group:>{sum(one.width for one in some) + len(some) - 1}}" for group, some in groups.items()]
     lines += [

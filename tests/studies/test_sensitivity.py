@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -226,10 +227,11 @@ def test_free_and_impossible_parameters_are_left_out_with_a_reason(replanner: Re
     assert "must be a number from 0" in found.left_out[1][1]
 
 
-def test_command_tells_writes_and_takes_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shipped = load_scenario("table5_free", ENTRIES)
-    (tmp_path / "scenario.toml").write_text(shipped.to_toml(), encoding="utf-8")
-    assert main(["sensitivity", str(tmp_path), "--plot", str(tmp_path / "bars.svg")]) == 0
+def test_command_tells_writes_and_takes_a_result(
+    solved: Callable[..., Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = solved("table5_free", *ENTRIES).folder
+    assert main(["sensitivity", str(folder), "--plot", str(tmp_path / "bars.svg")]) == 0
     text = capsys.readouterr().out
     for word in ("stature", "object mass", "duration", "grasp from feet is left out"):
         assert word in text
