@@ -33,11 +33,16 @@ from liftopt.commands.sensitivity import add_sensitivity_parser, sensitivity
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
 from liftopt.files.interrupt import INTERRUPTED, interrupts
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import load_scenario
+from liftopt.scenario.listing import DEFAULT_TEAM, describe
+from liftopt.scenario.model import Scenario
 from liftopt.storage.result_folder import in_the_way
 from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
+SCENARIO_HELP = """keys of a scenario, for --set, with what is allowed and the default. An agent is addressed by the
+name that the scenario gives it, here human and robot; in a TOML file its keys stand in [agents.human] and
+[agents.robot], and schema = 2 before all. table.* is object.*:
+"""
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
 
 
@@ -339,8 +344,8 @@ def _view(args: argparse.Namespace) -> int:
 
 
 def _scenario_help() -> str:
-    lines = [f"  {key}\n      {what}" for key, what in load_scenario().describe()]
-    return "keys of a scenario, for a TOML file and for --set:\n" + "\n".join(lines)
+    lines = [f"  {key}\n      {what}" for key, what in describe(Scenario, DEFAULT_TEAM)]
+    return SCENARIO_HELP + "\n".join(lines)
 
 
 def _error_dict(error: LiftoptError, status: int) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,7 +44,8 @@ def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str
 
 def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
     """Return a row an entry: key, value, what it is and what is allowed."""
-    values = dict(_flat(scenario.to_dict()))
+    entries = scenario.entries().items()
+    values = {key: f"{value:g}" if isinstance(value, float) else str(value) for key, value in entries}
     rows = []
     for key, about in scenario.describe():
         what, _, allowed = about.partition(": ")
@@ -102,14 +102,6 @@ def _state(passed: bool, limit: float | None) -> str:
 
 def _quantities(scenario: Scenario) -> tuple[Quantity, ...]:
     return subject_quantities(subject_of(scenario.first("person")))
-
-
-def _flat(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _number(value: float, digits: int = 1) -> str:
