@@ -18,6 +18,7 @@ import argparse
 import base64
 import hashlib
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -95,10 +96,10 @@ def _repaired(wheel: Path, out: Path) -> Path:
         kernels = any(name.startswith("liftopt/kernels/") for name in file.namelist())
     if wheel.name.startswith("liftopt-") and not kernels:
         raise SystemExit(f"{wheel.name} has no kernels; what the build printed says why")
-    before = set(out.glob("*.whl"))
-    _run(["auditwheel", "repair", "--exclude", "libcasadi.so*", "--wheel-dir", str(out), str(wheel)])
-    (written,) = set(out.glob("*.whl")) - before
-    return written
+    repaired = wheel.parent / "repaired" / wheel.name
+    _run(["auditwheel", "repair", "--exclude", "libcasadi.so*", "--wheel-dir", str(repaired), str(wheel)])
+    (written,) = repaired.glob("*.whl")
+    return Path(shutil.move(written, out / written.name))
 
 
 def _run(words: Sequence[str]) -> None:
