@@ -94,7 +94,7 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
                    frozenset({"grasp_force"}), 512, relative=True),
     ]  # fmt: skip
     if (away := distance_key(scenario)) is not None:
-        who = _moved(scenario, partner(scenario) or "")
+        who = _base(scenario, partner(scenario) or "")
         nearer, farther = f"{who} {{change:.2f}} m nearer", f"{who} {{change:.2f}} m farther away"
         found.append(Adjustable((away,), 0.01, 0.1, nearer, farther, _MOTION, 256))
     for keys, where in (*_ends(scenario, "height"), *_ends(scenario, "z")):
@@ -123,6 +123,6 @@ def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]
         yield tuple(f"task.{end}.{name}" for end in given), "object at both ends"
 
 
-def _moved(scenario: Scenario, name: str) -> str:
-    """Return what is moved of an agent that is to stand elsewhere, in words."""
+def _base(scenario: Scenario, name: str) -> str:
+    """Return what of an agent is moved to move it, in words."""
     return f"{name} base" if scenario.agents[name].kind == "robot" else name
