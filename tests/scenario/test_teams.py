@@ -120,6 +120,13 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
         ("agents.force={kind='robot', model='sawyer'}", "agents", "is the name of something else"),
         ("agents.two words={kind='robot', model='sawyer'}", "agents", "1 to 32 letters"),
         ("object.name=human", "agents", "is the name of something else"),
+        ("object.name=grasp", "object.name", "is the name of something else"),
+        ("object.name=sawyer", "object.name", "the file sawyer.urdf is another one's"),
+        (
+            "agents.human_arm={kind='person', stature=1.7, mass=70.0, sex='male', position=[0.5, 1]}",
+            "agents",
+            "the file human_arm.urdf is another one's",
+        ),
         ("object.name=a b", "object.name", "1 to 32 letters"),
         ("object.grasps={robbot=[0.2, 0.0, 0.0]}", "object.grasps.robbot", "did you mean robot"),
         ("object.grasps={robot=[0.2, 0.0]}", "object.grasps.robot", "a table of NAME = "),
