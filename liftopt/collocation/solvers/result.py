@@ -15,7 +15,7 @@ Array = npt.NDArray[np.float64]
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
 # Of a solver that was given an incumbent: no failure, but not worth going on.
-PRUNED = "Worse_Than_Rival"
+PRUNED = "Worse_Than_Incumbent"
 
 
 @dataclass(frozen=True)
