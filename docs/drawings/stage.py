@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import shutil
+import tempfile
 from collections.abc import Callable, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +19,7 @@ from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 from liftopt.search.solve import lift
 from liftopt.solution.solution import Solution
+from liftopt.storage.writer import save
 from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_style import INK, Array
 
@@ -35,6 +40,14 @@ class Body(NamedTuple):
 def default_lift() -> Solution:
     """Return the default lift, solved once for all drawings."""
     return lift(load_scenario("table5"))
+
+
+@cache
+def default_result() -> Path:
+    """Return the folder that the default lift is saved in, for as long as the build takes."""
+    folder = Path(tempfile.mkdtemp(prefix="liftopt-docs-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return save(default_lift(), folder)
 
 
 @cache
