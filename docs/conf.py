@@ -15,7 +15,6 @@ sys.path.insert(0, str(HERE))  # drawings, tables, mathml
 import liftopt  # noqa: E402
 
 project = "liftopt"
-author = "the liftopt authors"
 version = release = liftopt.__version__
 extensions = ["sphinx.ext.autodoc", "sphinx.ext.napoleon", "myst_parser", "sphinx_gallery.gen_gallery", "mathml"]
 exclude_patterns = ["_build", "_drawings", "_tables", "drawings", "tables", "gallery/*.ipynb", "gallery/*.py"]
@@ -24,8 +23,10 @@ suppress_warnings = ["config.cache"]  # the gallery's settings hold a function
 html_theme = "furo"
 html_title = "liftopt"
 html_show_sphinx = False
+html_show_copyright = False
 html_copy_source = False
-templates_path: list[str] = []
+html_static_path = ["static"]
+html_css_files = ["formula.css"]
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 
@@ -47,14 +48,12 @@ sphinx_gallery_conf = {
     "reset_modules": (),
 }
 
-
 def _make_sources(app: Any) -> None:
     from drawings import write_drawings
     from tables import write_tables
 
     write_drawings(HERE / "_drawings")
     write_tables(HERE / "_tables")
-
 
 def setup(app: Any) -> None:
     """Make drawings and tables before Sphinx looks for its sources."""

@@ -42,7 +42,7 @@ def _side(axes: Axes) -> None:
     measure(axes, (middle[0], 0.0), (middle[0], task.start.height), f"task.start.height {task.start.height:g} m",
             ha="left", va="center", offset=(4, -8))  # fmt: skip
     measure(axes, (1.42, 0.0), (1.42, task.end.height), f"task.end.height\n{task.end.height:g} m", ha="right",
-            va="center", offset=(-4, 24))  # fmt: skip
+            va="center", offset=(-4, -44))  # fmt: skip
     axes.plot([middle[-1], 1.42], [task.end.height] * 2, color=LIMIT, linewidth=0.6, linestyle=":")
     base = task.standing_distance
     measure(axes, (2.16, 0.0), (2.16, machine.base_height), f"robot.base_height\n{machine.base_height:g} m", ha="left",
