@@ -48,12 +48,14 @@ sphinx_gallery_conf = {
     "reset_modules": (),
 }
 
+
 def _make_sources(app: Any) -> None:
     from drawings import write_drawings
     from tables import write_tables
 
     write_drawings(HERE / "_drawings")
     write_tables(HERE / "_tables")
+
 
 def setup(app: Any) -> None:
     """Make drawings and tables before Sphinx looks for its sources."""

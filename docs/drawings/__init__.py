@@ -13,9 +13,10 @@ from drawings.mesh import mesh
 from drawings.person_joints import person_joints
 from drawings.robot_joints import robot_joints
 from drawings.scope import scope
+from drawings.snapshots import lift
 from liftopt.viz.plots_style import STYLE
 
-DRAWINGS = (frames, grasp, person_joints, robot_joints, scope, mesh, house)
+DRAWINGS = (lift, frames, grasp, person_joints, robot_joints, scope, mesh, house)
 
 
 def write_drawings(folder: Path) -> None:

@@ -2,8 +2,8 @@
 The default lift
 ================
 
-A man of 1.75 m and a Sawyer robot raise a table of 2 kg from 0.9 to 1.4 m in two seconds. Who carries how much, and what do the
-joints of the person do?
+A man of 1.75 m and a Sawyer robot raise a table of 2 kg from 0.9 to 1.4 m in two seconds. Who carries how much, and
+what do the joints of the person do?
 """
 
 import matplotlib.pyplot as plt

@@ -2,7 +2,8 @@
 Replanning
 ==========
 
-The table is heavier than thought. From the last optimum a new plan takes a few iterations. It is verified when it is asked.
+The table is heavier than thought. From the last optimum a new plan takes a few iterations. It is verified when it is
+asked.
 """
 
 import time

@@ -2,7 +2,8 @@
 Two readings of Table 5
 =======================
 
-The paper's Table 5 leaves open where the robot's base is measured. ``table5`` takes 1.9 m, with a gripper; ``table5_near`` takes 1.7 m.
+The paper's Table 5 leaves open where the robot's base is measured. ``table5`` takes 1.9 m, with a gripper;
+``table5_near`` takes 1.7 m.
 """
 
 import matplotlib.pyplot as plt

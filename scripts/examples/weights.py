@@ -2,8 +2,8 @@
 Weights
 =======
 
-The optimum is what the weights make it. A weight on the grasp forces calms hands that pull against each other; a weight on the
-person's torques moves work to the robot.
+The optimum is what the weights make it. A weight on the grasp forces calms hands that pull against each
+other; a weight on the person's torques moves work to the robot.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Hands that transmit moments
 ===========================
 
-In the paper a grasp is a force at a point. A real hand also holds against turning. With ``grasp = "wrench"`` it may, up to
-``max_grasp_moment``, and it stays near its natural hold.
+In the paper a grasp is a force at a point. A real hand also holds against turning. With ``grasp = "wrench"`` it
+may, up to ``max_grasp_moment``, and it stays near its natural hold.
 """
 
 import matplotlib.pyplot as plt
