@@ -28,7 +28,7 @@ def _side(axes: Axes) -> None:
     paint_bodies(axes, end, "right", alpha=0.16, linewidth=0.2)
     paint_bodies(axes, [(body, body.q[0]) for body in cast.values()], "right")
     (person, robot), points = solution.agents, solution.object.grasp_position[:, :, [0, 2]]
-    task, machine = solution.scenario.task, solution.scenario.robot
+    task, machine = solution.scenario.task, solution.scenario.agents["robot"]
     axes.plot([-0.45, 2.35], [0.0, 0.0], color=INK, linewidth=0.8)
     for column, (agent, color) in enumerate(zip((person, robot), (BLUE, VERMILION), strict=True)):
         axes.plot(*points[:, column].T, color=color, linewidth=1.2, linestyle=(0, (1, 1)), zorder=5)
@@ -64,7 +64,7 @@ def _above(axes: Axes) -> None:
     points = solution.object.grasp_position[0, :, :2]
     axes.plot(points[0, 0], points[0, 1], "o", color=BLUE, markersize=4, zorder=6)
     axes.plot(points[1, 0], points[1, 1], "o", color=VERMILION, markersize=4, zorder=6)
-    box, x, y = solution.scenario.table, float(points[:, 0].mean()), float(points[0, 1])
+    box, x, y = solution.scenario.object, float(points[:, 0].mean()), float(points[0, 1])
     measure(axes, (x - box.depth / 2, y + box.width / 2 + 0.05), (x + box.depth / 2, y + box.width / 2 + 0.05),
             f"depth {box.depth:g} m")  # fmt: skip
     measure(axes, (x + 0.03, y - box.width / 2), (x + 0.03, y + box.width / 2), f"width {box.width:g} m", ha="left",

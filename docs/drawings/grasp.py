@@ -46,7 +46,7 @@ def _forces(axes: Axes) -> None:
             point, xytext=(30 * side, -36), textcoords="offset points", ha="center", va="top", fontsize=7.5,
             color=color, arrowprops={"arrowstyle": "-", "color": color, "linewidth": 0.6}, zorder=8,
         )  # fmt: skip
-    weight = 9.81 * solution.scenario.table.mass
+    weight = 9.81 * solution.scenario.object.mass
     arrow(axes, centre, centre - [0.0, PER_NEWTON * weight], INK, linewidth=2.0)
     axes.annotate(f"weight {weight:.0f} N", centre - [0.0, PER_NEWTON * weight], xytext=(0, -9),
                   textcoords="offset points", ha="center", fontsize=8, zorder=8)  # fmt: skip

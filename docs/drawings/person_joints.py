@@ -44,6 +44,7 @@ LOOKS = {
 def person_joints() -> Figure:
     """Return ten panels; the motion shown is the one that an anatomist counts as positive."""
     person, solution = bodies()["human"], default_lift()
+    who = solution.scenario.agents["human"]
     figure = Figure(figsize=(8.6, 6.6))
     panels = figure.subplots(2, 5)
     figure.subplots_adjust(left=0.01, right=0.99, top=0.86, bottom=0.02, wspace=0.08, hspace=0.36)
@@ -51,7 +52,7 @@ def person_joints() -> Figure:
         sign = -1 if "\N{MINUS SIGN}" in curve.label else +1
         show(axes, person, _motion(curve.joint, sign), _title(curve, sign))
     figure.suptitle(
-        f"Joints of the person ({solution.scenario.human.sex}, {solution.scenario.human.stature:g} m): the arrow is "
+        f"Joints of the person ({who.sex}, {who.stature:g} m): the arrow is "
         "the positive motion in plots and reports",
         fontsize=9.5, y=0.985,
     )  # fmt: skip

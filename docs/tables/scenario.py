@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from itertools import groupby
-
-from liftopt.scenario.model import Scenario
-from liftopt.scenario.schema import describe
+from liftopt.scenario.model import load_scenario
 from tables import table
+
+HEAD = ("key", "meaning", "allowed", "default")
 
 
 def scenario_keys() -> str:
-    """Return one table a section: key, meaning, what is allowed, default."""
+    """Return one table a section: key, meaning, what is allowed, default. Agents stand under their names."""
+    scenario = load_scenario()
+    sections: dict[str, list[tuple[str, ...]]] = {}
+    for key, what in scenario.describe():
+        about, _, allowed = what.partition(": ")
+        allowed, _, default = allowed.partition("; default ")
+        row = (f"`{key}`", about, allowed, f"`{default}`" if default else "")
+        sections.setdefault(key.rpartition(".")[0], []).append(row)
     parts = []
-    for section, entries in groupby(describe(Scenario), key=lambda entry: entry[0].rpartition(".")[0]):
-        rows = []
-        for key, what in entries:
-            about, _, allowed = what.partition(": ")
-            allowed, _, default = allowed.partition("; default ")
-            rows.append((f"`{key}`", about, allowed, f"`{default}`" if default else ""))
-        parts.append(f"### {section or 'Top level'}\n\n{table(('key', 'meaning', 'allowed', 'default'), rows)}")
+    for section, rows in sections.items():
+        agent, _, inside = section.partition(".")
+        who = scenario.agents.get(agent)
+        place = f"agents.{section}" if who else section
+        title = f"`[{place}]`" if section else "Top level"
+        if who and not inside:
+            title += f", a {who.kind}"
+        parts.append(f"### {title}\n\n{table(HEAD, rows)}")
     return "\n".join(parts)
