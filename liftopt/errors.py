@@ -14,7 +14,7 @@ class InputError(LiftoptError):
     """Something the user gave is wrong: the message names the key, the value and what is allowed.
 
     Attributes:
-        key: dotted name of the offending entry (``"table.mass"``) or a path.
+        key: dotted name of the offending entry (``"object.mass"``) or a path.
         value: the value as given, or ``NO_VALUE`` where there is none to show.
         allowed: what would be accepted, in words.
     """

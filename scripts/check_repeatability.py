@@ -31,13 +31,13 @@ HARD = (
     ("task.standing_distance=2.3",),
     ("task.standing_distance=3.5",),
     ("task.end.height=2.1",),
-    ("table.mass=40",),
-    ("table.mass=25",),
+    ("object.mass=40",),
+    ("object.mass=25",),
     ("limits.max_grasp_force=5",),
     ("limits.max_grasp_force=8", "duration=8"),
-    ("duration=0.28", "table.mass=10"),
-    ("duration=0.4", "table.mass=22"),
-    ("duration=0.3", "table.mass=6"),
+    ("duration=0.28", "object.mass=10"),
+    ("duration=0.4", "object.mass=22"),
+    ("duration=0.3", "object.mass=6"),
 )
 SEED, BUSY = 11, 6
 SAME = 1e-6  # relative difference of the objective with other vectors

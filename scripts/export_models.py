@@ -11,6 +11,7 @@ from pathlib import Path
 
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.person.provenance import subject_quantities
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
@@ -19,7 +20,7 @@ SUBJECT = Subject(stature=1.75, mass=75.0, sex="male")
 
 def default_files() -> dict[str, str]:
     """Return the text of each file of models/ that is generated, by name."""
-    robot = sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4)
+    robot = sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
     return {
         "human_arm.urdf": human_agent(SUBJECT).urdf,
         "human_arm_numbers.md": numbers_page(SUBJECT),

@@ -18,15 +18,15 @@ import numpy as np
 from scipy.stats import qmc
 
 from liftopt.errors import InputError, LiftoptError
-from liftopt.scenario.model import load_scenario, with_overrides
+from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.solve import lift
 
 RANGES = {
     "human.stature": (1.45, 2.05),
     "human.mass": (45.0, 130.0),
-    "table.mass": (0.5, 15.0),
-    "table.depth": (0.2, 1.2),
+    "object.mass": (0.5, 15.0),
+    "object.depth": (0.2, 1.2),
     "duration": (0.8, 6.0),
     "task.start.height": (0.3, 1.7),
     "task.end.height": (0.3, 1.7),
@@ -61,7 +61,7 @@ def answer(overrides: list[str], cache: SolverCache) -> dict[str, Any]:
     began, cpu = time.monotonic(), time.process_time()
     entry: dict[str, Any] = {"overrides": overrides}
     try:
-        solution = lift(with_overrides(load_scenario("table5"), overrides), cache=cache)
+        solution = lift(load_scenario("table5", overrides), cache=cache)
         entry |= {"outcome": "solved" if solution.solved else solution.status.partition(":")[0].partition(" (")[0]}
         entry |= {"status": solution.status, "objective": solution.objective}
         entry |= {"starts": [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]}

@@ -5,9 +5,10 @@ from __future__ import annotations
 import signal
 from collections.abc import Callable
 from functools import cache
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -29,6 +30,17 @@ class Solved(NamedTuple):
 
     solution: Solution
     folder: Path
+
+
+@pytest.fixture(scope="session")
+def scenario_tables() -> Any:
+    """Return a hypothesis strategy: tables of a scenario whose entries are allowed, each for itself."""
+    spec = spec_from_file_location("scenario_tables", Path(__file__).with_name("scenario_tables.py"))
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.tables()
 
 
 @pytest.fixture(scope="session")

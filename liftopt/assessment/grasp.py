@@ -41,7 +41,7 @@ def cap_findings(fine: Solution, agent: AgentTrajectory, subject: str) -> Iterat
 def squeeze_finding(fine: Solution) -> Finding:
     """Return how hard the two press or pull against each other; more than the object weighs is a warning."""
     squeezed = squeeze(fine.agents)
-    k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.table.mass * GRAVITY
+    k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.object.mass * GRAVITY
     peak, name = abs(float(squeezed[k])), fine.object.name
     verb = f"press the {name} together" if squeezed[k] > 0 else f"pull the {name} apart"
     than = f"{'' if peak > weight else 'not '}more than its weight of {weight:.0f} N"
@@ -69,7 +69,7 @@ def share_finding(fine: Solution) -> Finding:
         return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
     k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
     up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
-    down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.table.mass * GRAVITY
+    down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.object.mass * GRAVITY
     name, against = fine.object.name, down > AT_LIMIT * weight
     pressed = f"; one of them presses the {name} down with up to {down:.0f} N while the other lifts" if against else ""
     title = f"carries {low:.0f} to {100 * share[k]:.0f} % of the load, {100 * np.nanmean(share):.0f} % on average"

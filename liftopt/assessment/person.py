@@ -76,7 +76,9 @@ def _guide(fine: Solution, measure: Measure) -> Finding:
 
 
 def _data(fine: Solution) -> Finding:
-    strengths = [item for item in subject_quantities(subject_of(fine.scenario.human)) if item.group == "strength"]
+    strengths = [
+        item for item in subject_quantities(subject_of(fine.scenario.first("person"))) if item.group == "strength"
+    ]
     weak = [item for item in strengths if item.source.confidence in UNSURE]
     part = f"{len(weak)} of {len(strengths)} strength limits"
     return Finding(

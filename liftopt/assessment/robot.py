@@ -22,7 +22,7 @@ DATA: dict[str, tuple[float, Source, Source]] = {
 
 def robot_findings(fine: Solution) -> Iterator[Finding]:
     """Give what is to be said of the robot in a solution between its knots too."""
-    robot, (payload, payload_source, source) = fine.agents[1], DATA[fine.scenario.robot.model]
+    robot, (payload, payload_source, source) = fine.agents[1], DATA[fine.scenario.first("robot").model]
     yield _payload(fine, payload, payload_source)
     yield from joint_findings(fine, robot, Words(ROBOT, "torque", "torque limit", source.told, {}, {}, {}))
     yield from cap_findings(fine, robot, ROBOT)
@@ -30,7 +30,7 @@ def robot_findings(fine: Solution) -> Iterator[Finding]:
 
 def _payload(fine: Solution, payload: float, source: Source) -> Finding:
     """Return what the flange bears, gripper and the robot's part of the load, beside what it may carry."""
-    robot, tool = fine.agents[1], fine.scenario.robot.tool.mass
+    robot, tool = fine.agents[1], fine.scenario.first("robot").tool.mass
     # An arm that presses down with more than its gripper weighs is loaded as well.
     carried = np.abs(tool + robot.grasp_force[:, 2] / GRAVITY)
     k = int(np.argmax(carried))

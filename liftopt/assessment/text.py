@@ -62,7 +62,7 @@ def _headline(assessment: Assessment) -> str:
 
 
 def _scenario(scenario: Scenario) -> list[str]:
-    human, robot, table, task = scenario.human, scenario.robot, scenario.table, scenario.task
+    human, robot, table, task = scenario.first("person"), scenario.first("robot"), scenario.object, scenario.task
     return _wrapped(
         f"{human.sex} {human.stature:g} m, {human.mass:g} kg and {robot.model} lift {table.mass:g} kg ({table.depth:g} "
         f"x {table.width:g} x {table.height:g} m) from {task.start.height:g} to {task.end.height:g} m (height of the "

@@ -33,9 +33,9 @@ from liftopt.commands.sensitivity import add_sensitivity_parser, sensitivity
 from liftopt.errors import NO_VALUE, InputError, LiftoptError
 from liftopt.files.interrupt import INTERRUPTED, interrupts
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import Scenario, load_scenario
-from liftopt.scenario.schema import describe
+from liftopt.scenario.model import load_scenario
 from liftopt.storage.result_folder import in_the_way
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 SOLVED, BAD_INPUT, NOT_SOLVED = 0, 2, 3
@@ -99,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
         default=[],
         dest="overrides",
         metavar="KEY=VALUE",
-        help="change one entry of the scenario, for example table.mass=3; may be repeated",
+        help="change one entry of the scenario, for example object.mass=3; may be repeated",
     )
     solve.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     solve.add_argument(
@@ -188,7 +188,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _solve(args: argparse.Namespace) -> int:
-    scenario = load_scenario(args.scenario, args.overrides)
+    scenario = scenario_or_solved(args.scenario, args.overrides)
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), _progress() as progress:
         with _no_collection():
@@ -339,7 +339,7 @@ def _view(args: argparse.Namespace) -> int:
 
 
 def _scenario_help() -> str:
-    lines = [f"  {key}\n      {what}" for key, what in describe(Scenario)]
+    lines = [f"  {key}\n      {what}" for key, what in load_scenario().describe()]
     return "keys of a scenario, for a TOML file and for --set:\n" + "\n".join(lines)
 
 

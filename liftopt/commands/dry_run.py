@@ -60,6 +60,6 @@ def dry_run_text(args: argparse.Namespace, progress: Callable[[str], None] | Non
     solution, out = load_result(args.result), Path(args.out)
     with new_folder("--out", out) as folder:
         run = dry_run(solution, args.mode, goal_time, trials, seed, progress)
-        summary = summarised(run, solution.scenario.table.depth)
+        summary = summarised(run, solution.scenario.object.depth)
         names = write_dry_run(run, summary, folder)
     return f"{summary_text(summary)}\nWritten to {out}: {', '.join(names)}\n"

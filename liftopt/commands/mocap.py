@@ -96,11 +96,10 @@ def mocap(args: argparse.Namespace) -> str:
     from liftopt.lab.mocap.recorded_lift import Load, read_recording, recorded_lift
     from liftopt.lab.mocap.trial_part import TrialPart, ignored_markers
     from liftopt.multibody.bounds import checked_number
-    from liftopt.scenario.schema import section
 
     mapping = load_marker_map(args.mapping)
     given = {name: getattr(args, name) for name in ("mass", "sex", "stature") if getattr(args, name) is not None}
-    person = section(Person).accept("subject", section(Person).plain(mapping.subject) | given)
+    person = Person.checked(mapping.subject.plain() | given, "subject.")
     load = Load(
         measured=_measured(args, mapping.up),
         mass=checked_number("--object-mass", args.object_mass, 0.0, 100.0, "kg"),
@@ -108,7 +107,7 @@ def mocap(args: argparse.Namespace) -> str:
     )
     part = TrialPart(args.start, args.end, ignored_markers(args.ignore))
     recording = read_recording(Path(args.recording))
-    lift = recorded_lift(recording, replace(mapping, subject=person), load, args.cutoff, part)
+    lift = recorded_lift(recording, mapping.changed(subject=person), load, args.cutoff, part)
     if args.lift is not None:
         lift = lift.of_lift(args.lift)
     save_recorded(lift, Path(args.out))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
-from liftopt.scenario.model import load_scenario, scenario_to_dict
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def pareto(args: argparse.Namespace, progress: Callable[[str], None] | None = No
         InputError: the scenario or an option is wrong, or a file cannot be written.
         LiftoptError: there is no verified solution at all.
     """
-    scenario, out = load_scenario(args.scenario, args.overrides), Path(args.out)
+    scenario, out = scenario_or_solved(args.scenario, args.overrides), Path(args.out)
     there = next(folder for folder in (out, *out.absolute().parents) if os.path.exists(folder))
     if not there.is_dir():  # said before many solves, not after them
         raise InputError("--out", args.out, f"cannot be written: {there} is no folder")
@@ -93,7 +93,7 @@ def front_dict(front: Front) -> dict[str, Any]:
     """Return a front ready for JSON: dominated points are among the others, marked."""
     every = sorted((*front.points, *front.dominated), key=lambda point: point.weights)
     return {
-        "scenario": scenario_to_dict(front.scenario),
+        "scenario": front.scenario.to_dict(),
         "points": [_row(point, point in front.dominated) for point in every],
         "missing_weights": [list(weights) for weights in front.missing],
     }

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.files.suggestions import did_you_mean, nearest, nearest_keys
+from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.file import shipped_scenarios
+from liftopt.scenario.keys import refuse_contradictions
+from liftopt.scenario.listing import DEFAULT_TEAM, describe
+from liftopt.scenario.meant import nearest_keys
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.overrides import refuse_contradictions
-from liftopt.scenario.schema import describe
 from liftopt.storage.result_folder import holds_result
 
 SET = "--set"
@@ -68,7 +69,7 @@ class Parser(argparse.ArgumentParser):
             if before_command:
                 self.error(f"there is no option {name} here; options stand after the command")
             options = nearest(name, [known for known in self._option_string_actions if known.startswith("--")])
-            keys = nearest_keys(name[2:], [key for key, _ in describe(Scenario)])
+            keys = nearest_keys(name[2:], [key for key, _ in describe(Scenario, DEFAULT_TEAM)], DEFAULT_TEAM)
             if not options and keys and SET in self._option_string_actions:
                 value = word.partition("=")[2] or "VALUE"
                 self.error(f"there is no option {name}{did_you_mean([f'{SET} {key}={value}' for key in keys])}")

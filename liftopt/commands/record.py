@@ -88,13 +88,10 @@ def divider_of(args: argparse.Namespace, known: Divider | None = None) -> Divide
         InputError: a value is out of range.
     """
     from liftopt.lab.forces.voltage_divider import Divider
-    from liftopt.scenario.schema import section
 
-    kind = section(Divider)
     names = ("supply", "resistor", "full_scale")
     given = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
-    result: Divider = kind.accept("divider", kind.plain(known or Divider()) | given)
-    return result
+    return Divider.checked((known or Divider()).plain() | given, "divider.")
 
 
 def calibration_of(args: argparse.Namespace) -> Calibration | None:

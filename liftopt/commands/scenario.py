@@ -33,16 +33,15 @@ def scenario_text(args: argparse.Namespace) -> str:
     from liftopt.files.new_file import write_new
     from liftopt.lab.mocap.recorded_file import load_recorded
     from liftopt.lab.mocap.recorded_scenario import recorded_scenario
-    from liftopt.scenario.model import scenario_to_toml
 
     lift = load_recorded(args.recorded)
     if args.lift is not None:
         lift = lift.of_lift(args.lift)
     scenario = recorded_scenario(lift, args.object_mass)
     head = f"# Made from {' '.join(lift.source.split())}; what stands for what: liftopt/lab/recorded_scenario.py.\n"
-    write_new("--out", Path(args.out), head + scenario_to_toml(scenario))
+    write_new("--out", Path(args.out), head + scenario.to_toml())
     start, end = scenario.task.start, scenario.task.end
     return (
-        f"{scenario.table.mass:g} kg from {start.height:g} to {end.height:g} m in {scenario.duration:g} s, "
+        f"{scenario.object.mass:g} kg from {start.height:g} to {end.height:g} m in {scenario.duration:g} s, "
         f"the hand {start.human_distance:g} to {end.human_distance:g} m ahead of the feet\nWritten to {args.out}\n"
     )

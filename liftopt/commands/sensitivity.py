@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
-from liftopt.scenario.model import Scenario, load_scenario, scenario_to_dict, with_overrides
+from liftopt.scenario.model import Scenario
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
     plot = None if args.plot is None else Path(args.plot)
     if plot is not None and plot.suffix[1:] not in FORMATS:
         raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
-    scenario = load_scenario(args.scenario, args.overrides)
+    scenario = scenario_or_solved(args.scenario, args.overrides)
     from liftopt.studies.sensitivity import study
 
     candidate, cache = _sharp_plan(scenario, progress)
@@ -70,7 +71,7 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
 def study_dict(study: Study) -> dict[str, Any]:
     """Return a study ready for JSON: slopes in the figures' units over the parameter's."""
     return {
-        "scenario": scenario_to_dict(study.candidate.scenario),
+        "scenario": study.candidate.scenario.to_dict(),
         "figures": study.figures,
         "busiest": list(study.busiest),
         "parameters": [
@@ -104,7 +105,7 @@ def _sharp_plan(scenario: Scenario, progress: Callable[[str], None] | None) -> t
     if candidate is None:
         raise LiftoptError(f"no verified solution to differentiate: {solution.status}")
     sharp = min(SHARP, scenario.solver.tolerance)
-    polished = replanner.replan(with_overrides(scenario, [f"solver.tolerance={sharp!r}"]))
+    polished = replanner.replan(scenario.replace({"solver.tolerance": sharp}))
     return (candidate if polished is None or not polished.solved else polished), cache
 
 

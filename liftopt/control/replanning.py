@@ -5,7 +5,7 @@ heights, stature, where they stand, duration, weights - is solved from there in 
 
     replanner = Replanner()
     solution = replanner.solve(scenario)  # the first from scratch: best of several starts, verified
-    heavier = with_overrides(scenario, ["table.mass=2.2"])
+    heavier = scenario.replace({"object.mass": 2.2})
     plan = replanner.replan(heavier)  # a few milliseconds; None if that did not converge
     now = plan.at([0.3])  # q, v, a, torques and grasp forces at 0.3 s
     plan.solved  # verified by Pinocchio when it is asked

@@ -8,6 +8,7 @@ from liftopt.crosscheck.systems import CheckedSystem
 from liftopt.multibody.dh import ROTATION_WORLD_PAPER
 from liftopt.multibody.person.human import human_agent, human_chain, human_root
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent, sawyer_chain, sawyer_root
 from liftopt.multibody.table import lifted_table, table_chain
 
@@ -27,12 +28,12 @@ def default_robot() -> CheckedSystem:
     """Return Sawyer with its gripper, which holds at the origin of the last DH frame."""
     chain = sawyer_chain(base_height=BASE_HEIGHT, tool_length=TOOL_LENGTH, tool_mass=TOOL_MASS)
     agent = sawyer_agent(
-        standing_distance=STANDING_DISTANCE,
+        place=facing(STANDING_DISTANCE),
         base_height=BASE_HEIGHT,
         tool_length=TOOL_LENGTH,
         tool_mass=TOOL_MASS,
     )
-    root = sawyer_root(STANDING_DISTANCE)
+    root = sawyer_root(facing(STANDING_DISTANCE))
     return CheckedSystem(chain, agent.model, root, (agent.grasp_frame,), np.zeros((1, 3)))
 
 

@@ -120,7 +120,7 @@ def _niosh(equation: Niosh) -> Measure:
 
 
 def _iso(solution: Solution) -> Measure:
-    mass, name = solution.scenario.table.mass, solution.object.name
+    mass, name = solution.scenario.object.mass, solution.object.name
     if mass < ISO_SMALLEST:
         reading = f"The standard starts at {ISO_SMALLEST:g} kg; the {name} has {mass:g} kg."
         return Measure("iso_11228_1", "ISO 11228-1", "out of scope", "not evaluated", reading, ISO_11228_1)
@@ -133,7 +133,7 @@ def _iso(solution: Solution) -> Measure:
 
 def _acgih(solution: Solution, equation: Niosh) -> Measure:
     ends = [
-        acgih_limit(solution.scenario.human, end.horizontal, end.vertical)
+        acgih_limit(solution.scenario.first("person"), end.horizontal, end.vertical)
         for end in (equation.origin, equation.destination)
     ]
     found = [limit for limit in ends if limit is not None]

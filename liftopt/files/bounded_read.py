@@ -8,6 +8,8 @@ from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
 
+MOST_LOOKED_AT = 1000  # entries of a folder where something is looked for
+
 
 def read_regular(path: Path, largest: int, what: str) -> bytes:
     """Return the content of a file.
@@ -37,6 +39,14 @@ def read_regular(path: Path, largest: int, what: str) -> bytes:
     if len(content) > largest:
         raise InputError(shown, NO_VALUE, f"is larger than {largest} bytes; {what}")
     return content
+
+
+def first_entries(folder: Path) -> list[Path]:
+    """Return the first ``MOST_LOOKED_AT`` entries of a folder in order; none if it cannot be looked into."""
+    try:
+        return sorted(entry for entry, _ in zip(folder.iterdir(), range(MOST_LOOKED_AT), strict=False))
+    except (OSError, ValueError):
+        return []
 
 
 def _without_waiting(path: str, flags: int) -> int:

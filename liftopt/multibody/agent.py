@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,8 @@ from liftopt.errors import ModelError
 Array = npt.NDArray[np.float64]
 
 
+Kind = Literal["person", "robot"]
+KINDS: tuple[Kind, ...] = ("person", "robot")
 # Grasp points nearer to each other, or to a line, than this are at one point, or on that line [m].
 SAME_PLACE = 1e-6
 
@@ -93,6 +96,7 @@ class Agent:
 
     Attributes:
         name: prefix of its joint names (``"human"``, ``"robot"``).
+        kind: what it is; the optimal-control core carries it and never asks.
         urdf: the very URDF text that the model was loaded from.
         model: Pinocchio model of that URDF, all joints; the base placement is in its root's fixed joint.
         locked_joints: names of the virtual joints held at zero (eq. 13); they are eliminated from the optimisation.
@@ -104,6 +108,7 @@ class Agent:
     """
 
     name: str
+    kind: Kind
     urdf: str
     model: pin.Model
     locked_joints: tuple[str, ...]

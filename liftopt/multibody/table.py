@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from liftopt.multibody.agent import LiftedObject
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.dh import BodyInertia, DHChain, table_rows, translation
+from liftopt.multibody.edges import Point, edge_grasps
 from liftopt.multibody.shapes import Colour, box_at
 from liftopt.multibody.urdf import FixedLink, body_robot, load_free_model, urdf_text
 
@@ -35,10 +38,17 @@ def table_chain(*, mass: float, depth: float, width: float, height: float) -> DH
     return DHChain(NAME, rows, (*virtual, table_body(mass, (width, height, depth))))
 
 
-def lifted_table(*, mass: float, depth: float, width: float, height: float, urdf: str | None = None) -> LiftedObject:
+def lifted_table(
+    *,
+    mass: float,
+    depth: float,
+    width: float,
+    height: float,
+    urdf: str | None = None,
+    name: str = NAME,
+    grasps: Mapping[str, Point] | None = None,
+) -> LiftedObject:
     """Return the table as a free body; its frame is at its centre of mass and aligned with the world at zero.
-
-    The grasp points are in the middle of the two bottom edges: the human's at X = -depth/2, the robot's at +depth/2.
 
     Args:
         mass: [kg].
@@ -46,22 +56,25 @@ def lifted_table(*, mass: float, depth: float, width: float, height: float, urdf
         width: along Y [m].
         height: thickness of the top, along Z [m].
         urdf: this table's URDF if it was written before; None writes it.
+        name: of the object.
+        grasps: where each agent holds it, in its own axes from its centre [m]; None: ``edge_grasps``.
 
     Raises:
-        InputError: a value is out of range; its key is ``table.mass``, ``table.depth``...
+        InputError: a value is out of range; its key is ``object.mass``, ``object.depth``...
     """
     _check(mass, depth, width, height)
-    size = (float(depth), float(width), float(height))
-    edges = {"grasp_human": -depth / 2.0, "grasp_robot": depth / 2.0}
-    if urdf is not None:
-        return LiftedObject(NAME, urdf, load_free_model(urdf), tuple(edges))
-    grasps = [FixedLink(name, NAME, translation(x, 0.0, -height / 2.0)) for name, x in edges.items()]
-    top = box_at("top", WOOD, np.zeros(3), size)
-    text = urdf_text(body_robot(NAME, table_body(mass, size), (top,), grasps))
-    return LiftedObject(NAME, text, load_free_model(text), tuple(edges))
+    points = edge_grasps(depth, height) if grasps is None else grasps
+    frames = tuple(f"grasp_{agent}" for agent in points)
+    text = urdf
+    if text is None:
+        size = (float(depth), float(width), float(height))
+        grasp_links = [FixedLink(f"grasp_{agent}", name, translation(*point)) for agent, point in points.items()]
+        top = box_at("top", WOOD, np.zeros(3), size)
+        text = urdf_text(body_robot(name, table_body(mass, size), (top,), grasp_links))
+    return LiftedObject(name, text, load_free_model(text), frames)
 
 
 def _check(mass: float, depth: float, width: float, height: float) -> None:
-    checked_number("table.mass", mass, 0.01, 200.0, "kg")
+    checked_number("object.mass", mass, 0.01, 200.0, "kg")
     for key, value in (("depth", depth), ("width", width), ("height", height)):
-        checked_number(f"table.{key}", value, 0.001, 3.0, "m")
+        checked_number(f"object.{key}", value, 0.001, 3.0, "m")

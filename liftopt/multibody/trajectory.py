@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.multibody.agent import Agent, Grasp, JointLimits, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject
 
 Array = npt.NDArray[np.float64]
 
@@ -23,6 +23,7 @@ class AgentTrajectory:
 
     Attributes:
         name: of the agent.
+        kind: what it is.
         joint_names: (n,) names.
         moving: (n,) False for the pinned virtual joints.
         q, v, a: (K, n) position, velocity, acceleration [rad or m, per s, per s^2].
@@ -37,6 +38,7 @@ class AgentTrajectory:
     """
 
     name: str
+    kind: Kind
     joint_names: tuple[str, ...]
     moving: npt.NDArray[np.bool_]
     q: Array
@@ -59,7 +61,7 @@ class AgentTrajectory:
 
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        constant = ("name", "joint_names", "moving", "limits", "grasp")
+        constant = ("name", "kind", "joint_names", "moving", "limits", "grasp")
         over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
         return replace(self, **over_time)
 
@@ -124,7 +126,7 @@ def agent_trajectory(
     p_world_base = model.jointPlacements[1].translation
     ground_moment = root[:, 3:] - cross(p_world_base, root[:, :3]) + cross(point - p_world_base, force) + moment
     return AgentTrajectory(
-        agent.name, names, moving, full_q, full_v, full_a, tau, force, moment, point,
+        agent.name, agent.kind, names, moving, full_q, full_v, full_a, tau, force, moment, point,
         grip @ frame.placement.rotation @ agent.grasp.R_hand_object,
         root[:, :3] + force, ground_moment, agent.limits, agent.grasp,
     )  # fmt: skip

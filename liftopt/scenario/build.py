@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,11 +12,16 @@ import numpy.typing as npt
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
+from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.person.human import HAND_UNDER_EDGE, Subject, human_agent
+from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL, sawyer_agent
 from liftopt.multibody.table import lifted_table
-from liftopt.scenario.model import GraspPose, Human, Robot, Scenario, Table
-from liftopt.storage.result_folder import URDF_FILES
+from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import grasp_points, lead, stand_of
+from liftopt.scenario.task import GraspPlace
+from liftopt.scenario.urdf_files import urdf_files
 
 Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
@@ -24,69 +29,84 @@ ROOM = 5.0  # [m]: half the width of the room the object may move in
 
 
 def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tuple[Agent, ...]:
-    """Return the person and the robot, in the order of the object's grasp points.
+    """Return everybody who lifts, in the scenario's order.
 
     Args:
         scenario: who they are.
         urdfs: file name -> text of the models if they were written before, as a solution keeps them.
+
+    Raises:
+        InputError: a model cannot be what the scenario says.
     """
-    return human_of(scenario, urdfs), robot_of(scenario, urdfs)
+    return tuple(agent_of(scenario, name, urdfs) for name in scenario.agents)
 
 
-def human_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
-    """Return the person; ``urdfs`` as in ``agents_of``."""
-    human = scenario.human
-    agent = human_agent(subject_of(human), (urdfs or {}).get(URDF_FILES["human"]))
-    friction = human.friction if human.contact == "flat" else None
-    return replace(agent, grasp=replace(_grasp(human, HAND_UNDER_EDGE), friction=friction))
-
-
-def subject_of(human: Human) -> Subject:
-    """Return the body that a scenario's person has."""
-    return Subject(human.stature, human.mass, "male" if human.sex == "male" else "female")
-
-
-def robot_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Agent:
-    """Return the robot; ``urdfs`` as in ``agents_of``."""
-    robot = scenario.robot
-    agent = sawyer_agent(
-        standing_distance=scenario.task.standing_distance,
-        base_height=robot.base_height,
-        tool_length=robot.tool.length,
-        tool_mass=robot.tool.mass,
-        urdf=(urdfs or {}).get(URDF_FILES["robot"]),
+def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = None) -> Agent:
+    """Return the agent of that name; ``urdfs`` as in ``agents_of``."""
+    who, urdf = scenario.agents[name], (urdfs or {}).get(urdf_files(scenario)[name])
+    stand = stand_of(scenario, name)
+    place = Placement.at(*stand)
+    if isinstance(who, Person):
+        friction = who.friction if who.contact == "flat" else None
+        grasp = replace(_grasp(who, HAND_UNDER_EDGE, stand.yaw_deg), friction=friction)
+        return replace(human_agent(subject_of(who), urdf, name=name, place=place), grasp=grasp)
+    robot = sawyer_agent(
+        place=place,
+        base_height=who.height,
+        tool_length=who.tool.length,
+        tool_mass=who.tool.mass,
+        urdf=urdf,
+        name=name,
     )
-    return replace(agent, grasp=_grasp(robot, LEVEL_TOOL))
+    return replace(robot, grasp=_grasp(who, LEVEL_TOOL, stand.yaw_deg - 180.0))
 
 
-def _grasp(who: Human | Robot, reference: Array) -> Grasp:
-    """Return someone's grasp; ``reference`` (3, 3) is the hand's orientation in the world on a level object."""
-    if who.grasp == "point":
-        return Grasp(R_hand_object=reference.T)
-    return Grasp(True, who.max_grasp_moment, math.radians(who.grasp_turn_deg), reference.T)
+def agent_key(scenario: Scenario, name: str) -> Hashable:
+    """Return all that an agent's model depends on: two scenarios with equal keys give the same agent."""
+    who = scenario.agents[name]
+    return name, tuple(value for key, value in who if key != "weight"), stand_of(scenario, name)
+
+
+def object_key(scenario: Scenario) -> Hashable:
+    """Return all that the object's model depends on, as ``agent_key`` does."""
+    return scenario.object, tuple(grasp_points(scenario).items())
+
+
+def subject_of(person: Person) -> Subject:
+    """Return the body that a scenario's person has."""
+    return Subject(person.stature, person.mass, person.sex)
 
 
 def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> LiftedObject:
-    """Return the table; ``urdfs`` as in ``agents_of``."""
-    table, urdf = scenario.table, (urdfs or {}).get(URDF_FILES["table"])
-    return lifted_table(mass=table.mass, depth=table.depth, width=table.width, height=table.height, urdf=urdf)
+    """Return the object, held in the agents' order; ``urdfs`` as in ``agents_of``."""
+    box = scenario.object
+    return lifted_table(
+        mass=box.mass,
+        depth=box.depth,
+        width=box.width,
+        height=box.height,
+        urdf=(urdfs or {}).get(urdf_files(scenario)[box.name]),
+        name=box.name,
+        grasps=grasp_points(scenario),
+    )
 
 
 def task_of(scenario: Scenario) -> LiftTask:
     """Return the task: poses at both ends by the height and tilt of the grasp points, sideways free."""
     limits, objective = scenario.limits, scenario.objective
     pitch, yaw = math.radians(limits.table_pitch_deg), math.radians(limits.table_yaw_deg)
-    # Two point grasps cannot turn the object about the line through them: its roll is locked.
-    turnable = "wrench" in (scenario.human.grasp, scenario.robot.grasp)
+    # Point grasps on one line along X cannot turn the object about it: its roll is locked.
+    lines = {(y, z) for _, y, z in grasp_points(scenario).values()}
+    turnable = len(lines) > 1 or any(agent.grasp == "wrench" for agent in scenario.agents.values())
     roll = math.radians(limits.table_roll_deg) if turnable else 0.0
     return LiftTask(
         duration=scenario.duration,
-        start=_pose(scenario.task.start, scenario.table),
-        end=_pose(scenario.task.end, scenario.table),
+        start=_pose(scenario, scenario.task.start),
+        end=_pose(scenario, scenario.task.end),
         pose_lower=np.array([-ROOM, -ROOM, 0.0, -roll, -pitch, -yaw]),
         pose_upper=np.array([ROOM, ROOM, ROOM, roll, pitch, yaw]),
         pose_velocity=np.full(6, OBJECT_SPEED),
-        agent_weights=(objective.human_weight, objective.robot_weight),
+        agent_weights=tuple(agent.weight for agent in scenario.agents.values()),
         acceleration_weight=objective.acceleration_weight,
         force_weight=objective.force_weight,
         max_grasp_force=limits.max_grasp_force,
@@ -99,13 +119,28 @@ def motions_of(scenario: Scenario, intervals: int | None = None) -> RestToRestSp
     return RestToRestSpline(scenario.solver.intervals if intervals is None else intervals, scenario.task.rest)
 
 
-def _pose(grasp: GraspPose, table: Table) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _grasp(who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
+    """Return someone's grasp.
+
+    Args:
+        who: holds the object.
+        reference: (3, 3) the hand's orientation in the world on a level object, of one who stands as by default.
+        turn_deg: how far from that it stands turned, about Z.
+    """
+    if turn_deg:
+        reference = rotation_z(math.radians(turn_deg))[:3, :3] @ reference
+    if who.grasp == "point":
+        return Grasp(R_hand_object=reference.T)
+    return Grasp(True, who.max_grasp_moment, math.radians(who.grasp_turn_deg), reference.T)
+
+
+def _pose(scenario: Scenario, place: GraspPlace) -> Array:
     """Return the pose of the centre of mass from where the grasp points are.
 
-    ``height`` is midway between them, ``human_distance`` the human's. The centre of mass lies half the table's height
-    off that middle, along the body's Z axis; half the depth along its X axis leads there from the human's grasp point.
+    ``height`` is midway between them, ``human_distance`` the lead's. The centre of mass lies half the box's height off
+    that middle, along the body's Z axis; half the depth along its X axis leads there from the lead's grasp point.
     """
-    pitch = math.radians(grasp.pitch_deg)
-    forward = (table.depth * math.cos(pitch) + table.height * math.sin(pitch)) / 2
-    ahead = np.nan if grasp.human_distance is None else grasp.human_distance + forward
-    return np.array([ahead, np.nan, grasp.height + table.height / 2 * math.cos(pitch), 0.0, pitch, 0.0])
+    box, pitch, feet = scenario.object, math.radians(place.pitch_deg), stand_of(scenario, lead(scenario))
+    forward = (box.depth * math.cos(pitch) + box.height * math.sin(pitch)) / 2
+    ahead = np.nan if place.human_distance is None else feet.x + (place.human_distance + forward)
+    return np.array([ahead, np.nan, place.height + box.height / 2 * math.cos(pitch), 0.0, pitch, 0.0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from functools import partial
 from typing import Any, TypeVar
 
 from liftopt.collocation.codegen.kernels import Progress
@@ -12,7 +13,7 @@ from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Solver
 from liftopt.collocation.spline import Mesh, RestToRestSpline
-from liftopt.scenario.build import human_of, object_of, robot_of, task_of
+from liftopt.scenario.build import agent_key, agent_of, object_key, object_of, task_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.postures import PostureSolver
 
@@ -39,12 +40,10 @@ class SolverCache:
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
         """Return the lift of a scenario on a mesh; ``say`` hears of it when kernels must be compiled first."""
-        robot = (scenario.robot, scenario.task.standing_distance)
-        agents = (
-            self._kept("human", scenario.human, lambda: human_of(scenario)),
-            self._kept("robot", robot, lambda: robot_of(scenario)),
+        agents = tuple(
+            self._kept(name, agent_key(scenario, name), partial(agent_of, scenario, name)) for name in scenario.agents
         )
-        held = self._kept("table", scenario.table, lambda: object_of(scenario))
+        held = self._kept("the object", object_key(scenario), partial(object_of, scenario))
         team = self._team
         if team is None or any(
             new is not old for new, old in zip((*agents, held), (*team.agents, team.object), strict=True)

@@ -14,10 +14,10 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import SOLVED, Solution, StartRecord
 from liftopt.solution.verify import verify
-from liftopt.storage.result_folder import URDF_FILES
 
 Array = npt.NDArray[np.float64]
 
@@ -93,6 +93,7 @@ class Candidate:
         """
         motion, team = motion_at(self.problem, self.spline, self.result.x, self.spline.phase), self.problem.team
         terms, weights = objective_terms(motion), objective_weights(self.problem)
+        files = urdf_files(self.scenario)
         urdfs = {agent.name: agent.urdf for agent in team.agents} | {team.object.name: team.object.urdf}
         return Solution(
             scenario=self.scenario,
@@ -100,7 +101,7 @@ class Candidate:
             time=motion.time,
             agents=motion.agents,
             object=motion.object,
-            urdfs={URDF_FILES[name]: text for name, text in urdfs.items()},
+            urdfs={files[name]: text for name, text in urdfs.items()},
             objective=sum(weights[name] * value for name, value in terms.items()),
             objective_terms=terms,
             objective_weights=weights,

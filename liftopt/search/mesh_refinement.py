@@ -25,7 +25,7 @@ from liftopt.collocation.solvers.result import PRUNED, STOPPED, SolverResult
 from liftopt.collocation.spline import FEWEST
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
-from liftopt.scenario.model import Refine
+from liftopt.scenario.settings import Refine
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.accuracy import OTHER_MOTION, Accuracy

@@ -11,19 +11,21 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from typing import get_args
 
 from liftopt.collocation.codegen.simd_kernels import load_simd_kernels
 from liftopt.collocation.problem import Team, kernel_requests
+from liftopt.scenario.agents import GRASPS
 from liftopt.scenario.build import agents_of, object_of
-from liftopt.scenario.model import GRASPS, load_scenario
+from liftopt.scenario.model import load_scenario
 
 
 def ship(folder: str) -> bool:
     """Compile the kernels into a folder and return whether all are there."""
     os.environ["LIFTOPT_CACHE"] = folder
     whole = True
-    for grasp in GRASPS:
-        scenario = load_scenario(overrides=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
+    for grasp in get_args(GRASPS):
+        scenario = load_scenario(changes=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
         team = Team.of(agents_of(scenario), object_of(scenario), _say)
         simd = load_simd_kernels(kernel_requests(team.agents, team.object), _say)
         whole = whole and simd is not None and all(kernel.compiled for kernel in team.kernels)

@@ -19,7 +19,7 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers, Solver, SolverResult
 from liftopt.collocation.transfer import transfer
 from liftopt.errors import InputError, SolverError
-from liftopt.scenario.model import Scenario, scenario_from_dict, scenario_to_dict
+from liftopt.scenario.model import Scenario
 from liftopt.search.candidate import Candidate
 from liftopt.search.feasibility_screen import too_fast
 from liftopt.search.initial_guess import InitialGuess, posture_starts
@@ -79,7 +79,7 @@ def levers(scenario: Scenario) -> list[Adjustable]:
     found = [
         Adjustable(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
               frozenset({"velocity", "torque", "grasp_force", "closure"}), 600, relative=True),
-        Adjustable(("table.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
+        Adjustable(("object.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
         Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
               frozenset({"grasp_force"}), 512, relative=True),
         Adjustable(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
@@ -91,12 +91,14 @@ def levers(scenario: Scenario) -> list[Adjustable]:
     for keys, where in _ends(scenario, "human_distance"):
         found.append(Adjustable(keys, 0.01, 0.1, where + " {change:.2f} m nearer to the person",
                            where + " {change:.2f} m farther from the person", _POSTURE))  # fmt: skip
+    for name, agent in scenario.agents.items():
+        if agent.kind == "robot":
+            found.append(
+                Adjustable((f"{name}.base_height",), 0.01, 0.1, f"{name} base {{change:.2f}} m lower",
+                      f"{name} base {{change:.2f}} m higher", _POSTURE)
+            )  # fmt: skip
     found.append(
-        Adjustable(("robot.base_height",), 0.01, 0.1, "robot base {change:.2f} m lower",
-              "robot base {change:.2f} m higher", _POSTURE)
-    )  # fmt: skip
-    found.append(
-        Adjustable(("table.depth",), 0.01, 0.1, "object at most {value:.2f} m deep",
+        Adjustable(("object.depth",), 0.01, 0.1, "object at most {value:.2f} m deep",
               "object at least {value:.2f} m deep", _POSTURE)
     )  # fmt: skip
     return found
@@ -167,7 +169,7 @@ class SuggestedChanges:
         return self._remedy(lever, sign, candidate) if self._holds(candidate) else None
 
     def _remedy(self, lever: Adjustable, sign: int, candidate: Candidate) -> SuggestedChange:
-        was, values = (tuple(_get(s, key) for key in lever.keys) for s in (self.search.scenario, candidate.scenario))
+        was, values = (tuple(s.value(key) for key in lever.keys) for s in (self.search.scenario, candidate.scenario))
         change = abs(values[0] - was[0])
         words = (lever.less if sign < 0 else lever.more).format(change=change, value=values[0])
         if "{value" in (lever.less or lever.more):
@@ -242,7 +244,7 @@ class SuggestedChanges:
 
 def _hint(scenario: Scenario, lever: Adjustable, obstacles: Sequence[Obstacle]) -> int:
     """Return how many steps of a lever the obstacles seem to ask for; 0 if it cannot help against them."""
-    most, was = 0.0, _get(scenario, lever.keys[0])
+    most, was = 0.0, scenario.value(lever.keys[0])
     for obstacle in obstacles:
         if obstacle.constraint not in lever.against:
             continue
@@ -252,7 +254,7 @@ def _hint(scenario: Scenario, lever: Adjustable, obstacles: Sequence[Obstacle]) 
             continue
         if not lever.relative:
             change = obstacle.amount if obstacle.unit == "m" else 0.0
-        elif lever.keys == ("table.mass",):
+        elif lever.keys == ("object.mass",):
             change = was * obstacle.share / (1.0 + obstacle.share)
         else:
             change = was * obstacle.share
@@ -267,21 +269,8 @@ def _elsewhere(lever: Adjustable, when: float) -> bool:
 
 def _changed(scenario: Scenario, lever: Adjustable, steps: int) -> Scenario | None:
     """Return the scenario with its values on the lever's grid, or None if it would be none."""
-    data = scenario_to_dict(scenario)
-    for key in lever.keys:
-        *path, name = key.split(".")
-        section = data
-        for part in path:
-            section = section[part]
-        section[name] = round(round(section[name] / lever.step + steps) * lever.step, 6)
+    grid = {key: round(round(scenario.value(key) / lever.step + steps) * lever.step, 6) for key in lever.keys}
     try:
-        return scenario_from_dict(data)
+        return scenario.replace(grid)
     except InputError:
         return None
-
-
-def _get(scenario: Scenario, key: str) -> float:
-    value: object = scenario
-    for part in key.split("."):
-        value = getattr(value, part)
-    return float(value)  # type: ignore[arg-type]

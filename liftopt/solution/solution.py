@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.errors import InputError
+from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
 from liftopt.scenario.model import Scenario
 from liftopt.solution.accuracy import Accuracy
@@ -46,7 +48,7 @@ class Solution:
         scenario: what was asked, all defaults filled in.
         outcome: ``"solved"`` or why there is no solution, in one line.
         time: (K,) knots [s].
-        agents: trajectories at the knots, the human first.
+        agents: trajectories at the knots, in the scenario's order.
         object: the object's trajectory at the knots.
         urdfs: file name -> text of the very models solved.
         objective: weighted sum of the terms.
@@ -96,6 +98,28 @@ class Solution:
         if self.outcome != SOLVED or self.verification.passed:
             return self.outcome
         return f"verification failed: {self.verification.describe_failure()}"
+
+    def __getitem__(self, name: str) -> AgentTrajectory:
+        """Return the trajectory of the agent of that name.
+
+        Raises:
+            InputError: nobody has it.
+        """
+        for agent in self.agents:
+            if agent.name == name:
+                return agent
+        names = [agent.name for agent in self.agents]
+        raise InputError("agent", name, f"must be one of {', '.join(names)}{did_you_mean(nearest(name, names))}")
+
+    @property
+    def persons(self) -> tuple[AgentTrajectory, ...]:
+        """The people who lift, in the scenario's order."""
+        return tuple(agent for agent in self.agents if agent.kind == "person")
+
+    @property
+    def robots(self) -> tuple[AgentTrajectory, ...]:
+        """The robots that lift, in the scenario's order."""
+        return tuple(agent for agent in self.agents if agent.kind == "robot")
 
     @property
     def ground_reaction_force(self) -> Array:

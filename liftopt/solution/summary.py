@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.scenario.model import scenario_to_dict
 from liftopt.solution.interpolation import between_knots
 from liftopt.storage.result_folder import FILES
 
@@ -76,7 +75,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
         "files": [] if out is None else [str(out / name) for name in FILES],
-        "scenario": scenario_to_dict(solution.scenario),
+        "scenario": solution.scenario.to_dict(),
         "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
@@ -161,7 +160,7 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
         rows.append(
             {
                 "joint": joint,
-                "meaning": joint_meaning(agent.name, solution.scenario.robot.model, joint),
+                "meaning": joint_meaning(agent.name, solution.scenario.first("robot").model, joint),
                 "peak_torque_Nm": _number(tau[at, column]),
                 "peak_torque_at_s": _number(solution.time[at]),
                 "share_of_limit": _number(share[at, column]),
@@ -196,7 +195,7 @@ def _grasp_moment(solution: Solution) -> dict[str, Any]:
 def _ground_reaction(solution: Solution) -> dict[str, Any]:
     force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
     vertical = _peak(force[:, 2], solution.time, "N")
-    weight = solution.scenario.human.mass * GRAVITY
+    weight = solution.scenario.first("person").mass * GRAVITY
     return {
         "vertical": vertical,
         "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,

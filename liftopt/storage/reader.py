@@ -17,11 +17,12 @@ from liftopt.multibody.likeness import difference
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import Solution
 from liftopt.storage.netcdf_file import read_netcdf
 from liftopt.storage.record import read_assessment, read_record
-from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, URDF_FILES, locked, standing_result
+from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, locked, standing_result
 from liftopt.storage.result_path import no_result, result_file
 from liftopt.storage.urdf_check import read_model
 
@@ -55,7 +56,7 @@ def load_result(path: str | Path) -> Solution:
         if not (folder / SCENARIO).exists():
             raise InputError(str(folder / SCENARIO), NO_VALUE, "no such file; a result has one beside its solution.nc")
         scenario = load_scenario(folder / SCENARIO)
-        urdfs = {name: read_model(folder / MODELS / name) for name in URDF_FILES.values()}
+        urdfs = {name: read_model(folder / MODELS / name) for name in urdf_files(scenario).values()}
     try:
         agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
         _check_models(scenario, agents, held, folder / MODELS)
@@ -74,7 +75,7 @@ def _check_models(scenario: Scenario, agents: tuple[Agent, ...], held: LiftedObj
     for one, other, names in zip(given, expected, frames, strict=True):
         if found := difference(one.model, other.model, names):
             raise InputError(
-                str(folder / URDF_FILES[other.name]),
+                str(folder / urdf_files(scenario)[other.name]),
                 NO_VALUE,
                 f"is not the {other.name} of {SCENARIO} beside it: {found}; copy a result whole, or solve again",
             )

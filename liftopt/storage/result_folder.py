@@ -22,6 +22,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.files.bounded_read import first_entries
 
 NETCDF, SCENARIO, MODELS = "solution.nc", "scenario.toml", "models"
 URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table.urdf"}
@@ -29,7 +30,6 @@ URDF_FILES = {"human": "human_arm.urdf", "robot": "sawyer.urdf", "table": "table
 FILES = (*(f"{MODELS}/{name}" for name in URDF_FILES.values()), SCENARIO, NETCDF)
 UNSOLVED = "unsolved"  # folder for the iterate of a failed solve, within that of a solved result
 OLDER, WORK_PREFIX = ".older-result", ".writing-result-"
-MOST_LOOKED_AT = 1000  # entries of a folder where a result is looked for
 PATIENCE = 10.0  # seconds; a result is written in a tenth of one
 
 
@@ -48,16 +48,8 @@ def holds_result(folder: Path) -> bool:
 
 
 def results_in(folder: Path) -> list[Path]:
-    """Return the folders in ``folder`` that hold a result, of its first ``MOST_LOOKED_AT`` entries."""
+    """Return the folders in ``folder`` that hold a result, of its first entries."""
     return [entry for entry in first_entries(folder) if holds_result(entry)]
-
-
-def first_entries(folder: Path) -> list[Path]:
-    """Return the first ``MOST_LOOKED_AT`` entries of a folder in order; none if it cannot be looked into."""
-    try:
-        return sorted(entry for entry, _ in zip(folder.iterdir(), range(MOST_LOOKED_AT), strict=False))
-    except (OSError, ValueError):
-        return []
 
 
 def in_the_way(folder: Path) -> Path | None:

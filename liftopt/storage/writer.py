@@ -18,7 +18,6 @@ import liftopt
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.errors import InputError
 from liftopt.files.checksum import sealed
-from liftopt.scenario.model import scenario_to_toml
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.solution import Solution
 from liftopt.storage.netcdf_file import read_netcdf
@@ -40,7 +39,7 @@ def save(solution: Solution, out: Path) -> Path:
         InputError: the folder or a file cannot be written.
     """
     files = {f"{MODELS}/{name}": text.encode() for name, text in solution.urdfs.items()}
-    files |= {SCENARIO: scenario_to_toml(solution.scenario).encode(), NETCDF: sealed(_netcdf(solution))}
+    files |= {SCENARIO: solution.scenario.to_toml().encode(), NETCDF: sealed(_netcdf(solution))}
     try:
         out.mkdir(parents=True, exist_ok=True)
         with locked(out, to_write=True):

@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from liftopt.collocation.motion import objective_terms
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
-from liftopt.scenario.model import Objective, Scenario
+from liftopt.scenario.model import Scenario
 from liftopt.search.candidate import Candidate
 from liftopt.solution.summary import shares
 
@@ -74,9 +74,12 @@ def pareto_front(scenario: Scenario, count: int = 11, progress: Progress | None 
     """
     if not FEWEST <= count <= MOST:
         raise InputError("--points", count, f"must be a whole number from {FEWEST} to {MOST}")
-    total = scenario.objective.human_weight + scenario.objective.robot_weight
+    names = list(scenario.agents)
+    if len(names) != 2:
+        raise InputError("agents", ", ".join(names), "a front is that of two agents' efforts")
+    total = sum(agent.weight for agent in scenario.agents.values())
     if total == 0:
-        raise InputError("objective.human_weight", 0.0, "one of human_weight and robot_weight must be above 0")
+        raise InputError(f"{names[0]}.weight", 0.0, f"one of {names[0]}.weight and {names[1]}.weight must be above 0")
     logs = np.linspace(DECADES / 2, -DECADES / 2, count).tolist()  # of human over robot
     walk = _Walk(scenario, total, logs, Replanner(progress), progress or (lambda line: None))
     candidates = walk.best()
@@ -124,8 +127,7 @@ class _Walk:
         if found is None or found.spline.intervals == options.intervals:
             return found
         # It took a finer mesh, and objectives compare on one mesh only: all begin again there.
-        finer, enough = replace(options, intervals=found.spline.intervals), replace(self.scenario.refine, on=False)
-        self.scenario = replace(self.scenario, solver=finer, refine=enough)
+        self.scenario = self.scenario.replace({"solver.intervals": found.spline.intervals, "refine.on": False})
         self.candidates = [None] * len(self.candidates)
         return self._search(i)
 
@@ -167,18 +169,17 @@ class _Walk:
         return True
 
     def _scenario(self, log: float) -> Scenario:
-        human, robot = weights_at(self.total, log)
-        objective: Objective = replace(self.scenario.objective, human_weight=human, robot_weight=robot)
-        return replace(self.scenario, objective=objective)
+        weights = zip(self.scenario.agents, weights_at(self.total, log), strict=True)
+        return self.scenario.replace({f"{name}.weight": weight for name, weight in weights})
 
 
 def _point(candidate: Candidate) -> Point:
     motion = candidate.at(candidate.spline.phase * candidate.problem.task.duration)
-    terms, objective = objective_terms(motion), candidate.scenario.objective
+    terms, agents = objective_terms(motion), candidate.scenario.agents
     human, robot = motion.agents
     share = float(np.nanmean(shares(motion.agents)[0]))
     efforts = (terms[human.name], terms[robot.name])
-    return Point((objective.human_weight, objective.robot_weight), efforts, share, candidate)
+    return Point((agents[human.name].weight, agents[robot.name].weight), efforts, share, candidate)
 
 
 def _beats(one: Point, other: Point) -> bool:

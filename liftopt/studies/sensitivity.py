@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +21,8 @@ from liftopt.collocation.motion import motion_at, objective_terms, objective_wei
 from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
-from liftopt.scenario.model import Scenario, scenario_to_dict, with_overrides
+from liftopt.files.entries import FREE
+from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
@@ -57,18 +57,32 @@ class Parameter:
     unit: str
 
 
-PARAMETERS = (
-    Parameter("stature", ("human.stature",), 0.01, "m"),
-    Parameter("body mass", ("human.mass",), 1.0, "kg"),
-    Parameter("object mass", ("table.mass",), 0.1, "kg"),
-    Parameter("object depth", ("table.depth",), 0.01, "m"),
-    Parameter("start height", ("task.start.height",), 0.01, "m"),
-    Parameter("end height", ("task.end.height",), 0.01, "m"),
-    Parameter("grasp from feet", ("task.start.human_distance", "task.end.human_distance"), 0.01, "m"),
-    Parameter("feet to robot", ("task.standing_distance",), 0.01, "m"),
-    Parameter("robot base height", ("robot.base_height",), 0.01, "m"),
-    Parameter("duration", ("duration",), 0.1, "s"),
-)
+def parameters_of(scenario: Scenario) -> tuple[Parameter, ...]:
+    """Return what a scenario's lift depends on: everybody's measures, the object, and the task."""
+    found: list[Parameter] = []
+    for name, agent in scenario.agents.items():
+        if agent.kind == "person":
+            found.append(Parameter(_of(scenario, name, "stature"), (f"{name}.stature",), 0.01, "m"))
+            found.append(Parameter(_of(scenario, name, "body mass"), (f"{name}.mass",), 1.0, "kg"))
+    found += [
+        Parameter("object mass", ("object.mass",), 0.1, "kg"),
+        Parameter("object depth", ("object.depth",), 0.01, "m"),
+        Parameter("start height", ("task.start.height",), 0.01, "m"),
+        Parameter("end height", ("task.end.height",), 0.01, "m"),
+        Parameter("grasp from feet", ("task.start.human_distance", "task.end.human_distance"), 0.01, "m"),
+        Parameter("feet to robot", ("task.standing_distance",), 0.01, "m"),
+    ]
+    for name, agent in scenario.agents.items():
+        if agent.kind == "robot":
+            found.append(Parameter(_of(scenario, name, "robot base height"), (f"{name}.base_height",), 0.01, "m"))
+    return (*found, Parameter("duration", ("duration",), 0.1, "s"))
+
+
+def _of(scenario: Scenario, name: str, what: str) -> str:
+    """Return what of an agent is meant; with others of its kind by its name."""
+    kind = scenario.agents[name].kind
+    alone = sum(agent.kind == kind for agent in scenario.agents.values()) == 1
+    return what if alone else f"{what} of {name}"
 
 
 @dataclass(frozen=True)
@@ -123,7 +137,7 @@ class Study:
 def study(
     candidate: Candidate,
     cache: SolverCache,
-    parameters: Sequence[Parameter] = PARAMETERS,
+    parameters: Sequence[Parameter] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Study:
     """Return what a plan depends on.
@@ -131,13 +145,14 @@ def study(
     Args:
         candidate: solved, to a tolerance far below what a change does.
         cache: that it comes from.
-        parameters: to look at.
+        parameters: to look at; None: ``parameters_of`` its scenario.
         progress: hears one line at a time.
 
     Raises:
         SolverError: kernels cannot be had.
     """
-    return _Differences(candidate, cache).study(parameters, progress or (lambda line: None))
+    chosen = parameters_of(candidate.scenario) if parameters is None else parameters
+    return _Differences(candidate, cache).study(chosen, progress or (lambda line: None))
 
 
 def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario:
@@ -146,11 +161,11 @@ def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario
     Raises:
         InputError: the change leads out of what a scenario may say.
     """
-    values = {key: _value(scenario, key) for key in parameter.keys}
+    values = {key: scenario.value(key) for key in parameter.keys}
     free = [key for key, value in values.items() if not isinstance(value, float)]
     if free:
-        raise InputError(free[0], values[free[0]], "is no number that could change")
-    return with_overrides(scenario, [f"{key}={float(value + change)!r}" for key, value in values.items()])
+        raise InputError(free[0], FREE, "is no number that could change")
+    return scenario.replace({key: float(value + change) for key, value in values.items()})
 
 
 def figures(candidate: Candidate) -> dict[str, float]:
@@ -198,9 +213,9 @@ class _Differences:
         found, left_out = [], []
         for parameter in parameters:
             progress(f"sensitivity to {parameter.name}")
-            value = _value(self.candidate.scenario, parameter.keys[0])
+            value = self.candidate.scenario.value(parameter.keys[0])
             if not isinstance(value, float):
-                left_out.append((parameter, f"{parameter.keys[0]} is {value}"))
+                left_out.append((parameter, f"{parameter.keys[0]} is {FREE}"))
                 continue
             try:
                 found.append(self._sensitivity(parameter, value))
@@ -280,10 +295,3 @@ class _Differences:
         if worst and tangent.reach < step:
             worst += f"; {tangent.limit} reaches or leaves its limit"
         return worst
-
-
-def _value(scenario: Scenario, key: str) -> Any:
-    value: Any = scenario_to_dict(scenario)
-    for part in key.split("."):
-        value = value[part]
-    return value

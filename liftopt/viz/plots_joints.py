@@ -54,7 +54,7 @@ def robot_torques(lift: Lift) -> Figure:
 
 
 def _robot(lift: Lift) -> tuple[JointCurve, ...]:
-    return robot_curves(lift.dense.agents[1], lift.dense.scenario.robot.model)
+    return robot_curves(lift.dense.agents[1], lift.dense.scenario.first("robot").model)
 
 
 def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figure:

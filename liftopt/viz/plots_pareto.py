@@ -26,8 +26,8 @@ def pareto_figure(front: Front) -> Figure:
             *zip(*(point.efforts for point in front.dominated), strict=True),
             color=FAINT, linestyle="none", marker="x", label="beaten in both efforts",
         )  # fmt: skip
-    now = front.scenario.objective
-    own = [p for p in front.points if abs(p.weights[0] - now.human_weight) <= 1e-9 * (1 + now.human_weight)]
+    now = next(agent.weight for agent in front.scenario.agents.values())
+    own = [p for p in front.points if abs(p.weights[0] - now) <= 1e-9 * (1 + now)]
     for point in own:
         axes.plot(
             *point.efforts, color=ORANGE, linestyle="none", marker="o", markersize=8, zorder=4,

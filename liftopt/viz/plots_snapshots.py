@@ -45,7 +45,7 @@ def snapshots(lift: Lift) -> Figure:
         axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
     reach = float(solution.agents[1].grasp_position[:, 0].max())
     panels[0].set_xlim(-0.35, max(reach, solution.scenario.task.standing_distance) + 0.4)
-    panels[0].set_ylim(-0.16, max(solution.scenario.human.stature, 1.7) + HEADROOM)
+    panels[0].set_ylim(-0.16, max(solution.scenario.first("person").stature, 1.7) + HEADROOM)
     _key(figure, panels[0], key, solution.object.name)
     return figure
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from liftopt.multibody.person.provenance import Quantity, subject_quantities
 from liftopt.scenario.build import subject_of
-from liftopt.scenario.model import Scenario, scenario_to_dict
-from liftopt.scenario.schema import describe
+from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import JointCurve
 
@@ -46,9 +45,9 @@ def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str
 
 def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
     """Return a row an entry: key, value, what it is and what is allowed."""
-    values = dict(_flat(scenario_to_dict(scenario)))
+    values = dict(_flat(scenario.to_dict()))
     rows = []
-    for key, about in describe(Scenario):
+    for key, about in scenario.describe():
         what, _, allowed = about.partition(": ")
         rows.append({"key": key, "value": values.get(key, ""), "what": what, "allowed": allowed})
     return rows
@@ -102,7 +101,7 @@ def _state(passed: bool, limit: float | None) -> str:
 
 
 def _quantities(scenario: Scenario) -> tuple[Quantity, ...]:
-    return subject_quantities(subject_of(scenario.human))
+    return subject_quantities(subject_of(scenario.first("person")))
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

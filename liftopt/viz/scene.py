@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from liftopt.multibody.dh import rotation_z, translation
 from liftopt.scenario.build import subject_of
+from liftopt.scenario.placement import stand_of
 from liftopt.solution.solution import Solution
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
@@ -106,16 +107,15 @@ def body_path(cast: Cast, body: str) -> str:
 def parts_of(cast: Cast) -> list[Part]:
     """Return everything that is drawn of the person, the robot and the object, at zero."""
     scenario = cast.solution.scenario
-    robot, table = scenario.robot, scenario.table
-    world_base = translation(scenario.task.standing_distance, 0.0, robot.base_height) @ rotation_z(np.pi)
+    robot, table = scenario.first("robot"), scenario.object
+    stand = stand_of(scenario, cast.solution.robots[0].name)
+    world_base = translation(stand.x, stand.y, robot.height) @ rotation_z(np.radians(stand.yaw_deg))
     name = cast.solution.object.name
     size = (table.depth, table.width, table.height)
-    if cast.sawyer is None:
-        arm = sawyer_parts(world_base, robot.base_height)
-    else:
-        arm = sawyer_mesh_parts(cast.sawyer, world_base)
+    meshes = cast.sawyer
+    arm = sawyer_parts(world_base, robot.height) if meshes is None else sawyer_mesh_parts(meshes, world_base)
     return [
-        *person_parts(subject_of(scenario.human), cast.shirt),
+        *person_parts(subject_of(scenario.first("person")), cast.shirt),
         *arm,
         *gripper_parts(world_base, robot.tool.length),
         Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)),

@@ -103,7 +103,7 @@ def _facts(cast: Cast, name: str) -> dict[str, Any]:
         "solved": solution.solved,
         "ghost": cast.ghost,
         "colour": "#" + "".join(f"{round(255 * value):02x}" for value in cast.colour),
-        "head": [0.0, cast.offset[1], solution.scenario.human.stature + ABOVE_HEAD],
+        "head": [0.0, cast.offset[1], solution.scenario.first("person").stature + ABOVE_HEAD],
         "time": np.round(playback.time, 5).tolist(),
         "force": sizes,
         "height": np.round(playback.bodies[solution.object.name].position[:, 2], 4).tolist(),
@@ -114,7 +114,7 @@ def _sight(casts: Sequence[Cast]) -> dict[str, list[list[float]]]:
     """Return the boxes [m] that the camera presets keep in view: lowest and highest corner of each."""
     boxes: dict[str, list[Array]] = {"human": [], "robot": [], "hands": []}
     for cast in casts:
-        stature = cast.solution.scenario.human.stature
+        stature = cast.solution.scenario.first("person").stature
         boxes["human"].append(np.array([[-BODY, -BODY, 0.0], [BODY, BODY, stature]]) + cast.offset)
         for agent, force in cast.playback.forces.items():
             bodies = cast.playback.bodies.items()
@@ -122,7 +122,7 @@ def _sight(casts: Sequence[Cast]) -> dict[str, list[list[float]]]:
             boxes[agent].append(np.vstack([np.zeros((0, 3)), *joints, force.point]) + cast.offset)
             boxes["hands"].append(force.point + cast.offset)
         base = cast.solution.scenario.task.standing_distance
-        top = cast.solution.scenario.robot.base_height + ROBOT_ABOVE_BASE
+        top = cast.solution.scenario.first("robot").base_height + ROBOT_ABOVE_BASE
         boxes["robot"].append(np.array([[base - 0.2, -0.35, 0.0], [base + 0.5, 0.35, top]]) + cast.offset)
     sight = {}
     for name, room in (("human", 0.0), ("robot", 0.05), ("hands", HANDS)):

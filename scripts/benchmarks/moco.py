@@ -33,7 +33,6 @@ from benchmarks.moco_path import as_answer, on_our_models
 from liftopt.collocation.motion import Motion, motion_at, objective_weights
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.model import with_overrides
 
 Array = npt.NDArray[np.float64]
 TOLERANCE, FINE = 1e-3, 1e-6
@@ -52,7 +51,7 @@ def measure(case: Case, seconds: float) -> tuple[Row, ...]:
 
 
 def _beside_ours(case: Case, tolerance: float, seconds: float, guess: str = "ours") -> Row:
-    case = replace(case, scenario=with_overrides(case.scenario, [f"solver.tolerance={tolerance:g}"]))
+    case = replace(case, scenario=case.scenario.replace({"solver.tolerance": float(f"{tolerance:g}")}))
     beside = Beside(case)
     found = _run(describe(case) | {"tolerance": tolerance, "guess": guess}, seconds)
     ours = beside.finish()

@@ -29,9 +29,9 @@ COUNT, WITH_REFERENCE, SEED, STARTS = 60, 40, 2026, 8
 RANGES = {
     "human.stature": (1.55, 1.92),
     "human.mass": (50.0, 100.0),
-    "table.mass": (0.5, 5.0),
-    "table.depth": (0.35, 0.55),
-    "table.width": (0.2, 0.5),
+    "object.mass": (0.5, 5.0),
+    "object.depth": (0.35, 0.55),
+    "object.width": (0.2, 0.5),
     "task.start.height": (0.75, 1.0),
     "task.end.height": (1.15, 1.45),
     "task.start.human_distance": (0.35, 0.45),
@@ -94,7 +94,7 @@ def draw(count: int) -> list[tuple[str, ...]]:
     drawn = []
     for i, point in enumerate(points):
         values = dict(zip(RANGES, np.round(point, 3).tolist(), strict=True))
-        depth, ahead = values["table.depth"], values["task.start.human_distance"]
+        depth, ahead = values["object.depth"], values["task.start.human_distance"]
         values["task.end.human_distance"] = ahead
         values["task.standing_distance"] = round(ahead + depth + values.pop("clearance"), 3)
         drawn.append((f"human.sex={('male', 'female')[i % 2]}", *(f"{key}={value}" for key, value in values.items())))

@@ -15,9 +15,10 @@ from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import FEWEST
 from liftopt.control.replanning import Replanner
 from liftopt.scenario.build import agents_of, object_of, task_of
-from liftopt.scenario.model import Scenario, with_overrides
+from liftopt.scenario.keys import changes_in
+from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
-from liftopt.search.candidate import Plan
+from liftopt.search.candidate import Candidate
 from liftopt.search.mesh_refinement import meshes_below, neighbour
 
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
@@ -38,9 +39,9 @@ def warm_named(case: Case, repeats: int) -> Row:
     """Time IPOPT's re-solve after each of the three changes and after all of them; the slowest counts."""
     scenario = case.scenario
     changes: dict[str, tuple[str, ...]] = {
-        "mass +10 %": (f"table.mass={scenario.table.mass * (1 + MASS)}",),
+        "mass +10 %": (f"object.mass={scenario.object.mass * (1 + MASS)}",),
         "final height +2 cm": (f"task.end.height={scenario.task.end.height + HEIGHT}",),
-        "subject +2 cm": (f"human.stature={scenario.human.stature + STATURE}",),
+        "subject +2 cm": (f"human.stature={scenario.first('person').stature + STATURE}",),
     }
     changes["all three"] = tuple(override for change in changes.values() for override in change)
     solver = case.solver("ipopt")
@@ -48,7 +49,7 @@ def warm_named(case: Case, repeats: int) -> Row:
     details: dict[str, Any] = {}
     iterations, failed = {}, []
     for name, overrides in changes.items():
-        near = _changed(case, with_overrides(scenario, overrides), optimum)
+        near = _changed(case, scenario.replace(dict(changes_in(overrides))), optimum)
         timing, result = repeat(repeats, near.solve, solver, warm=optimum.multipliers, problem=near.problem)
         details[name] = timing.plain() | spent(result)
         iterations[name] = result.iterations
@@ -64,7 +65,7 @@ def warm_mixes(case: Case, mixes: int) -> Row:
     solver = case.solver("banded")
     optimum = case.solve(solver)
     replanner = Replanner()
-    replanner.solve(with_overrides(case.scenario, ["solver.name=banded", "solver.starts=1"]))
+    replanner.solve(case.scenario.replace({"solver.name": "banded", "solver.starts": 1}))
     first = replanner.latest
     took, whole, iterations, failed = [], [], [], 0
     cpu: list[float] = []
@@ -76,7 +77,7 @@ def warm_mixes(case: Case, mixes: int) -> Row:
         iterations.append(result.iterations)
         failed += not near.verified(result)
         replanner.latest = first
-        whole.append(1e3 * measure(1, replanner.replan, with_overrides(scenario, ["solver.name=banded"]))[0].median)
+        whole.append(1e3 * measure(1, replanner.replan, scenario.replace({"solver.name": "banded"}))[0].median)
     p90 = float(np.percentile(took, 90))
     in_all = float(np.percentile(whole, 90))
     note = f"{failed} of {mixes} not verified; from a changed scenario, models included: p90 {in_all:.1f} ms"
@@ -117,7 +118,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     for intervals in meshes:
         steps = [_stepwise(varied, intervals, repeats) for varied in lifts]
         found["stepwise_ms"].append(float(np.mean([1e3 * timing.median for timing, _ in steps])))
-        last = [plan.result.iterations for _, plan in steps if plan]
+        last = [candidate.result.iterations for _, candidate in steps if candidate]
         found["stepwise_iterations"].append(float(np.mean(last)))
         found["not_converged"] += [intervals] * (len(steps) - len(last))
     an_interval = np.array(found["ms"]) / np.array(meshes)
@@ -134,7 +135,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     return Row(ratio, note, {"iterations": counted}, details)
 
 
-def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Plan | None]:
+def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Candidate | None]:
     """Time the banded solver from the coarsest mesh below to the one that is wanted, each from the optimum before.
 
     Returns:
@@ -144,12 +145,12 @@ def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Pla
     case, cache = Case.of(varied.scenario(), varied.ends, coarsest), SolverCache()
     solver = case.solver("banded")
 
-    def solve() -> Plan | None:
+    def solve() -> Candidate | None:
         result = case.solve(solver)
-        plan = Plan(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
+        candidate = Candidate(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
         for n in finer:
-            plan = plan and neighbour(cache, plan, n, ("banded",), time.monotonic() + PATIENCE, print)
-        return plan
+            candidate = candidate and neighbour(cache, candidate, n, ("banded",), time.monotonic() + PATIENCE, print)
+        return candidate
 
     return repeat(repeats, solve)
 
@@ -188,9 +189,9 @@ def _mixes(scenario: Scenario, count: int) -> list[Scenario]:
     found = []
     for share in rng.uniform(-1.0, 1.0, (count, 3)):
         overrides = (
-            f"table.mass={scenario.table.mass * (1 + MASS * share[0]):.4f}",
+            f"object.mass={scenario.object.mass * (1 + MASS * share[0]):.4f}",
             f"task.end.height={scenario.task.end.height + HEIGHT * share[1]:.4f}",
-            f"human.stature={scenario.human.stature + STATURE * share[2]:.4f}",
+            f"human.stature={scenario.first('person').stature + STATURE * share[2]:.4f}",
         )
-        found.append(with_overrides(scenario, overrides))
+        found.append(scenario.replace(dict(changes_in(overrides))))
     return found

@@ -20,4 +20,4 @@ def light(solved: Callable[..., Any]) -> Solution:
 @pytest.fixture(scope="session")
 def heavy(solved: Callable[..., Any]) -> Any:
     """A table of 14 kg on a coarse mesh, and the folder of its result."""
-    return solved("table5", "table.mass=14", "solver.intervals=20", "solver.starts=2")
+    return solved("table5", "object.mass=14", "solver.intervals=20", "solver.starts=2")

@@ -180,8 +180,7 @@ def test_grasp_force_at_its_cap_is_a_caution_and_beyond_it_a_warning(light: Solu
     for agent, code in zip(light.agents, ("person.grasp_force", "robot.grasp_force"), strict=True):
         largest = float(np.linalg.norm(agent.grasp_force, axis=1).max())
         for cap, severity in ((largest, "caution"), (0.98 * largest, "warning"), (2.0 * largest, "info")):
-            limits = replace(light.scenario.limits, max_grasp_force=cap)
-            capped = replace(light, scenario=replace(light.scenario, limits=limits))
+            capped = replace(light, scenario=light.scenario.replace({"limits.max_grasp_force": cap}))
             (finding,) = _of(assess(capped), code)
             assert (finding.severity, finding.value) == (severity, pytest.approx(largest, rel=1e-12))
 
@@ -231,10 +230,9 @@ def test_an_iterate_is_not_judged_and_its_remedies_name_keys(light: Solution) ->
 
 
 def test_a_mesh_that_was_refined_is_said(solved: Callable[..., Any], light: Solution) -> None:
-    asked = replace(light.scenario.solver, intervals=light.intervals // 2)
-    coarse = replace(light, scenario=replace(light.scenario, solver=asked))
+    coarse = replace(light, scenario=light.scenario.replace({"solver.intervals": light.intervals // 2}))
     (finding,) = _of(assess(coarse), "mathematics.mesh")
-    assert finding.title == f"mesh refined from N = {asked.intervals} to {light.intervals}"
+    assert finding.title == f"mesh refined from N = {coarse.scenario.solver.intervals} to {light.intervals}"
 
 
 def test_a_finding_holds_known_severities_and_finite_numbers() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -35,8 +34,8 @@ def test_the_command_it_names_can_be_pasted(solution: SimpleNamespace) -> None:
 
 
 def test_another_scenario_is_described_by_its_own_numbers(solution: SimpleNamespace) -> None:
-    human = dataclasses.replace(solution.scenario.human, sex="female", stature=1.6, mass=55.0)
-    solution.scenario = dataclasses.replace(solution.scenario, human=human, name="nurse")
+    changes = {"human.sex": "female", "human.stature": 1.6, "human.mass": 55.0, "name": "nurse"}
+    solution.scenario = solution.scenario.replace(changes)
     text = verdict_text(solution, None)
     assert text.startswith("nurse: WARNING for the person\nfemale 1.6 m, 55 kg")
     assert "Written to" not in text
@@ -85,7 +84,7 @@ def _failed(solution: SimpleNamespace, reasons: int, suggested_changes: int) -> 
     solution.suggested_changes = (
         SuggestedChange(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),
         *(
-            SuggestedChange(("table.mass",), (float(i),), f"object at most {i} kg", 2.0)
+            SuggestedChange(("object.mass",), (float(i),), f"object at most {i} kg", 2.0)
             for i in range(suggested_changes)
         ),
     )

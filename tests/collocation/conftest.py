@@ -22,6 +22,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.search.initial_guess import InitialGuess, posture_starts
@@ -52,7 +53,7 @@ def chain_agent(seed: int, name: str = "arm") -> Agent:
         -2.0 * np.ones(n), 2.5 * np.ones(n), 3.0 * np.ones(n), -np.arange(60.0, 100.0, 10.0), 80.0 * np.ones(n)
     )
     workspace = HalfSpace(np.array([0.6, 0.0, 0.8]), -5.0)
-    return Agent(name, "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), workspace)
+    return Agent(name, "robot", "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), workspace)
 
 
 def box(grasps: np.ndarray, mass: float = 3.0) -> LiftedObject:
@@ -218,7 +219,7 @@ def human() -> Agent:
 
 @pytest.fixture(scope="session")
 def sawyer() -> Agent:
-    return sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4)
+    return sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
 
 
 @pytest.fixture(scope="session")

@@ -12,6 +12,7 @@ import pytest
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
@@ -158,7 +159,7 @@ def test_one_function_serves_every_tool_and_stand(
 ) -> None:
     """Pinocchio on another tool's and base's model, the bare flange included."""
     _, topology, functions = knot_functions["sawyer"]
-    other = of(sawyer_agent(standing_distance=distance, base_height=height, tool_length=length, tool_mass=mass))
+    other = of(sawyer_agent(place=facing(distance), base_height=height, tool_length=length, tool_mass=mass))
     assert other.signature() == topology.signature()
     y = sample(functions, rng)
     expected = agent_outputs(other.model, other.frames[0], y, PERIOD)

@@ -35,7 +35,7 @@ def test_a_lift_that_is_possible_breaks_nothing_and_meets_every_row() -> None:
 @pytest.mark.parametrize(("cap", "mass"), [(8.0, 4.0), (5.0, 2.0)])
 def test_grasps_lack_half_the_weight_less_their_cap(cap: float, mass: float) -> None:
     """Two hands at the edges of a level body that hardly moves carry half its weight each."""
-    problem = _problem(f"limits.max_grasp_force={cap}", f"table.mass={mass}", *STILL)
+    problem = _problem(f"limits.max_grasp_force={cap}", f"object.mass={mass}", *STILL)
     found = elastic(problem, naive_guess(problem).x, np.inf)
     assert found.converged
     assert {(v.constraint, v.who, v.unit) for v in found.violations} == {

@@ -17,6 +17,7 @@ from liftopt.collocation.task import LiftTask
 from liftopt.errors import ModelError
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.search.initial_guess import posture_starts
 
@@ -51,7 +52,7 @@ def test_two_robots(
     check_derivatives: Callable[[Problem], None],
 ) -> None:
     """Two Sawyers face each other over a box, one turned about the vertical."""
-    near = sawyer_agent(standing_distance=1.275, base_height=0.8, tool_length=0.15, tool_mass=0.4)
+    near = sawyer_agent(place=facing(1.275), base_height=0.8, tool_length=0.15, tool_mass=0.4)
     agents = (make_turned(near, np.pi, 0.65), sawyer)
     team = Team.of(agents, make_box(EDGES))
     problem = Problem(team, make_task(), RestToRestSpline(8).mesh())

@@ -68,10 +68,10 @@ def test_solve_without_arguments_solves_table5_into_results(lift: FakeLift, caps
 
 
 def test_json_is_one_object_and_nothing_else(lift: FakeLift, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["solve", "table5_near", "--json", "--out", "deep/er", "--set", "table.mass=3", "--set", "name=heavy"]
+    arguments = ["solve", "table5_near", "--json", "--out", "deep/er", "--set", "object.mass=3", "--set", "name=heavy"]
     assert main(arguments) == 0
     scenario, out = lift.asked[0], lift.saved[0]
-    assert (scenario.name, scenario.table.mass, scenario.task.standing_distance) == ("heavy", 3.0, 1.7)
+    assert (scenario.name, scenario.object.mass, scenario.task.standing_distance) == ("heavy", 3.0, 1.7)
     assert out == Path("deep/er")
     summary = json.loads(capsys.readouterr().out)
     assert (summary["solved"], summary["exit_status"], summary["out"]) == (True, 0, "deep/er")
@@ -100,7 +100,7 @@ def _error_line(capsys: pytest.CaptureFixture[str]) -> str:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--set", "table.mass=-1.0"], "table.mass = -1.0: must be a number from 0.05 to 50 kg"),
+        (["--set", "object.mass=-1.0"], "object.mass = -1.0: must be a number from 0.05 to 50 kg"),
         (["--set", "human.stature=nan"], "human.stature = nan: must be"),
         (["--set", "robot.model=hal"], "robot.model = 'hal': must be"),
         (["nosuch.toml"], "nosuch.toml: no such file"),
@@ -138,7 +138,7 @@ def test_read_only_folder_is_bad_input(lift: FakeLift, capsys: pytest.CaptureFix
 @pytest.mark.parametrize(
     ("error", "status", "message"),
     [
-        (InputError("table.mass", 50.0, "must be less"), 2, "table.mass = 50.0: must be less"),
+        (InputError("object.mass", 50.0, "must be less"), 2, "object.mass = 50.0: must be less"),
         (OSError(errno.ENOSPC, "No space left on device"), 2, "No space left on device"),
         (SolverError("IPOPT cannot be loaded"), 3, "IPOPT cannot be loaded"),
         (KeyboardInterrupt(), 130, "interrupted"),
@@ -168,8 +168,8 @@ def test_failure_as_json_names_its_kind(lift: FakeLift, capsys: pytest.CaptureFi
         "exit_status": 3,
         "error": {"message": "no such library"},
     }
-    assert main(["solve", "--json", "--set", "table.mass=nan"]) == 2
-    assert json.loads(capsys.readouterr().out)["error"]["key"] == "table.mass"
+    assert main(["solve", "--json", "--set", "object.mass=nan"]) == 2
+    assert json.loads(capsys.readouterr().out)["error"]["key"] == "object.mass"
 
 
 @pytest.mark.parametrize("aside", ["", "unsolved"])
@@ -232,7 +232,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     for arguments, text in [
         (["--version"], "liftopt "),
         (["--help"], "crosscheck"),
-        (["solve", "--help"], "table.mass\n      mass of the object: a number from 0.05 to 50 kg"),
+        (["solve", "--help"], "object.mass\n      mass of the object: a number from 0.05 to 50 kg"),
     ]:
         with pytest.raises(SystemExit) as caught:
             main(arguments)
@@ -241,12 +241,12 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_script_is_the_same_command_and_answers_bad_input_without_loading_the_solver() -> None:
-    command = [sys.executable, "-X", "importtime", str(SCRIPT), "--set", "table.mass=0"]
+    command = [sys.executable, "-X", "importtime", str(SCRIPT), "--set", "object.mass=0"]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (run.returncode, run.stdout) == (2, "")
     timed = [line for line in run.stderr.splitlines() if line.startswith("import time:")]
     errors = [line for line in run.stderr.splitlines() if line not in timed]
-    assert errors == ["liftopt: error: table.mass = 0: must be a number from 0.05 to 50 kg (mass of the object)"]
+    assert errors == ["liftopt: error: object.mass = 0: must be a number from 0.05 to 50 kg (mass of the object)"]
     imported = {line.rpartition("|")[2].strip() for line in timed}
     assert "liftopt.commands.cli" in imported
     assert imported.isdisjoint({"numpy", "casadi", "pinocchio", "rich", "liftopt.search.solve"})

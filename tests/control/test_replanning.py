@@ -13,7 +13,7 @@ from liftopt.collocation.solvers.banded import Banded
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.control.replanning import WARM, Replanner
-from liftopt.scenario.model import Scenario, load_scenario, with_overrides
+from liftopt.scenario.model import Scenario, load_scenario
 
 BASE = ("solver.name=banded", "solver.starts=2")
 
@@ -35,12 +35,12 @@ def test_ten_random_changes_are_followed_and_verified(warm: Replanner, scenario:
     """Each verified by Pinocchio, and IPOPT that starts there stays."""
     rng, reference, iterations = np.random.default_rng(5), None, []
     ranges = {
-        "table.mass": (1.8, 2.2), "task.end.height": (1.38, 1.42), "task.start.height": (0.88, 0.92),
+        "object.mass": (1.8, 2.2), "task.end.height": (1.38, 1.42), "task.start.height": (0.88, 0.92),
         "human.stature": (1.73, 1.77), "human.mass": (73.0, 77.0), "task.standing_distance": (1.88, 1.92),
-        "duration": (1.95, 2.05), "objective.human_weight": (0.9, 1.1),
+        "duration": (1.95, 2.05), "human.weight": (0.9, 1.1),
     }  # fmt: skip
     for _ in range(10):
-        changed = with_overrides(scenario, [f"{key}={rng.uniform(*ends):.4f}" for key, ends in ranges.items()])
+        changed = scenario.replace({key: round(rng.uniform(*ends), 4) for key, ends in ranges.items()})
         solution = warm.solve(changed)
         assert solution.solved, solution.status
         assert solution.kept_start == WARM
@@ -57,7 +57,7 @@ def test_ten_random_changes_are_followed_and_verified(warm: Replanner, scenario:
 
 
 def test_a_replanned_solution_is_assessed_as_any_other(warm: Replanner, scenario: Scenario) -> None:
-    solution = warm.solve(with_overrides(scenario, ["table.mass=2.3"]))
+    solution = warm.solve(scenario.replace({"object.mass": 2.3}))
     assert solution.kept_start == WARM
     assert solution.assessment == assess(solution)
     assert {finding.code for finding in solution.assessment} >= {"verdict.person", "verdict.robot"}
@@ -80,18 +80,18 @@ def test_plan_is_the_solution_at_any_time(warm: Replanner, scenario: Scenario) -
 
 def test_another_structure_is_solved_from_scratch(warm: Replanner, scenario: Scenario) -> None:
     """Other intervals: there is nothing to start from; the next change is warm again."""
-    finer = with_overrides(scenario, ["solver.intervals=24"])
+    finer = scenario.replace({"solver.intervals": 24})
     assert warm.replan(finer) is None
     solution = warm.solve(finer)
     assert solution.solved and solution.intervals == 24 and solution.kept_start != WARM
-    assert warm.solve(with_overrides(finer, ["table.mass=2.1"])).kept_start == WARM
+    assert warm.solve(finer.replace({"object.mass": 2.1})).kept_start == WARM
     warm.solve(scenario)
 
 
 def test_another_scale_of_a_constraint_takes_a_new_solver_and_stays_warm(warm: Replanner, scenario: Scenario) -> None:
     """Grasp forces are shares of their cap: the rows of the problem change, their meaning does not."""
     warm.solve(scenario)
-    solution = warm.solve(with_overrides(scenario, ["limits.max_grasp_force=150"]))
+    solution = warm.solve(scenario.replace({"limits.max_grasp_force": 150}))
     assert solution.solved and solution.kept_start == WARM
     warm.solve(scenario)
 
@@ -106,7 +106,7 @@ def test_where_the_warm_solve_fails_it_searches_anew(
         return replace(result, converged=False, status="Line_Search_Failed") if options.get("warm") else result
 
     monkeypatch.setattr(Banded, "solve", fail)
-    heavier = with_overrides(scenario, ["table.mass=2.05"])
+    heavier = scenario.replace({"object.mass": 2.05})
     assert warm.replan(heavier) is None
     solution = warm.solve(heavier)
     assert solution.solved and solution.kept_start != WARM
@@ -114,6 +114,6 @@ def test_where_the_warm_solve_fails_it_searches_anew(
 
 def test_a_search_that_finds_nothing_does_not_lose_the_last_optimum(warm: Replanner, scenario: Scenario) -> None:
     warm.solve(scenario)
-    hasty = warm.solve(with_overrides(scenario, ["solver.time_limit=0.1", "table.mass=2.1"]), cold=True)
+    hasty = warm.solve(scenario.replace({"solver.time_limit": 0.1, "object.mass": 2.1}), cold=True)
     assert not hasty.solved and "time limit of 0.1 s reached" in hasty.status
     assert warm.solve(scenario).kept_start == WARM

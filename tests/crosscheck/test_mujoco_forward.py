@@ -43,7 +43,7 @@ def test_the_moment_that_nobody_serves_turns_the_object_when_it_is_left_out(simu
     # Oracle: that moment at its largest for 50 ms on the table's inertia about the line of its grasps.
     turned = simulation.windows(serve=False).deviation.turn
     moment = np.abs(solution.object.wrench[:, 3]).max()
-    table = solution.scenario.table
+    table = solution.scenario.object
     inertia = table.mass * ((table.width**2 + table.height**2) / 12 + (table.height / 2) ** 2)
     assert windows.deviation.turn < turned < 1.5 * moment / inertia * 0.05**2 / 2
 

@@ -60,7 +60,7 @@ def test_scopes_are_stated(solution: Any) -> None:
 
 
 def test_iso_is_in_range_from_three_kilograms(solution: Any) -> None:
-    heavy = replace(solution, scenario=replace(solution.scenario, table=replace(solution.scenario.table, mass=3.0)))
+    heavy = replace(solution, scenario=solution.scenario.replace({"object.mass": 3.0}))
     (iso,) = (measure for measure in ergonomics_of(heavy).measures if measure.name == "ISO 11228-1")
     assert (iso.scope, iso.result) == ("indicative", "not evaluated")
 
@@ -72,7 +72,7 @@ def test_iso_is_in_range_from_three_kilograms(solution: Any) -> None:
 )  # fmt: skip
 def test_acgih_zones(solution: Any, horizontal: float, vertical: float, wanted: float | None) -> None:
     # A man of 1.75 m: shoulder at about 1.43 m, knuckles at about 0.75 m, mid shin at about 0.3 m.
-    assert acgih_limit(solution.scenario.human, horizontal, vertical) == wanted
+    assert acgih_limit(solution.scenario.first("person"), horizontal, vertical) == wanted
 
 
 def test_strength_use_is_torque_over_the_limit_in_its_direction(posed: Callable[..., Any]) -> None:

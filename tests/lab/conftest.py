@@ -21,7 +21,6 @@ from liftopt.multibody.person.human import human_chain, human_root
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
-from liftopt.scenario.schema import section
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 
@@ -117,7 +116,7 @@ def truth() -> Lift:
     recorded = 1000.0 * (world @ turn.T + SHIFT)
     return Lift(
         recording=Recording("synthetic", RATE, time, tuple(labels), recorded, "mm", "Z"),
-        mapping=section(MarkerMap).accept("", MAPPING),
+        mapping=MarkerMap.checked(MAPPING),
         mapping_dict=MAPPING,
         subject=SUBJECT,
         q=q,
@@ -155,7 +154,7 @@ def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, rais
         at = time - STANDING - late * duration
         return np.stack([np.interp(at, dense.time, column) for column in flat.T], axis=1)
 
-    person, none = solution.scenario.human, np.zeros((len(time), 3))
+    person, none = solution.scenario.first("person"), np.zeros((len(time), 3))
     subject = Subject(person.stature, person.mass, "male" if person.sex == "male" else "female")
     return RecordedLift(
         source="made up",

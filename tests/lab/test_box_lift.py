@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,7 @@ def recorded(box_lift: Path) -> RecordedLift:
     before = hashlib.sha256(path.read_bytes()).hexdigest()
     mapping = load_marker_map("box_lift")
     lift = recorded_lift(
-        read_recording(path), replace(mapping, subject=replace(mapping.subject, mass=60.0)), Load(mass=6.0)
+        read_recording(path), mapping.changed(subject=mapping.subject.changed(mass=60.0)), Load(mass=6.0)
     )
     assert hashlib.sha256(path.read_bytes()).hexdigest() == before
     return lift
@@ -73,9 +72,9 @@ def test_its_scenario(recorded: RecordedLift) -> None:
     start, end = scenario.task.start, scenario.task.end
     assert end.height - start.height == pytest.approx(0.23, abs=0.02)
     assert scenario.duration == pytest.approx(2.1, abs=0.1)
-    assert 0.4 < scenario.table.depth < 0.7
+    assert 0.4 < scenario.object.depth < 0.7
     assert 0.4 < (end.human_distance or 0.0) < (start.human_distance or 0.0) < 0.7
-    assert (scenario.human.sex, scenario.human.mass) == ("female", 60.0)
+    assert (scenario.first("person").sex, scenario.first("person").mass) == ("female", 60.0)
 
 
 def test_another_tool_worked_on_this_trial(box_lift: Path) -> None:

@@ -160,7 +160,7 @@ def test_the_scenario_of_a_recorded_prediction_is_its_own(as_recorded: Made, sol
         ours, theirs = getattr(made.task, end), getattr(given.task, end)
         assert ours.height == pytest.approx(theirs.height, abs=1e-3)
         assert ours.human_distance == pytest.approx(theirs.human_distance, abs=1e-3)
-    assert (made.objective.robot_weight, made.limits.table_pitch_deg) == (0.0, 1.0)
+    assert (made.agents["robot"].weight, made.limits.table_pitch_deg) == (0.0, 1.0)
 
 
 def test_the_moved_feet_are_taken_off(as_recorded: Made, solution: Solution) -> None:
@@ -196,7 +196,7 @@ def test_half_the_weight_is_on_either_carrier(
     """At rest at both ends, a level object hangs half on each: statics."""
     made = recorded_scenario(as_recorded(solution), 2.0)
     overrides = [
-        "objective.robot_weight=0.0",
+        "robot.weight=0.0",
         "objective.force_weight=1.0",
         "limits.table_pitch_deg=1.0",
     ]

@@ -137,6 +137,6 @@ def test_a_recorded_lift_becomes_a_scenario(
     assert main(words) == 0
     assert "2 kg from 0.9 to 1.4 m in 2 s" in capsys.readouterr().out
     scenario = load_scenario(file)
-    assert (scenario.table.mass, scenario.duration, scenario.objective.robot_weight) == (2.0, 2.0, 0.0)
+    assert (scenario.object.mass, scenario.duration, scenario.agents["robot"].weight) == (2.0, 2.0, 0.0)
     assert main(words) == 2
     assert "exists already" in capsys.readouterr().err

@@ -16,7 +16,7 @@ from liftopt.lab.comparison.experiment import experiment
 from liftopt.lab.robot.bags import Kind, Record, write_bag
 from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
 from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosMessages
-from liftopt.scenario.build import robot_of
+from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 
@@ -118,7 +118,7 @@ def test_what_efforts_may_mean(solution: Solution, sign: float, beyond_gravity: 
     """Efforts made with another meaning, by Pinocchio's gravity torques, are told apart but not changed."""
     dense = refined(solution, 10)
     robot = dense.agents[1]
-    model = robot_of(solution.scenario, solution.urdfs).model
+    model = agent_of(solution.scenario, "robot", solution.urdfs).model
     data = model.createData()
     weight = np.array([pin.computeGeneralizedGravity(model, data, q) for q in robot.q])
     tau = sign * (robot.tau - beyond_gravity * weight)[:, robot.moving]

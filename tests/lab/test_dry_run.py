@@ -110,7 +110,7 @@ def test_velocity_mode_lags_as_a_first_order_filter_of_gain_two(runs):
 
 def test_the_server_stops_where_it_is_when_the_goal_time_is_over(result, runs):
     short = dry_run(result.solution, "velocity", 0.0, trials=1)
-    depth = result.solution.scenario.table.depth
+    depth = result.solution.scenario.object.depth
     stopped, settled = summarised(short, depth), summarised(runs["velocity"], depth)
     # What is left decays as exp(-2 t) while the server goes on.
     assert settled.hand_final < 1.5 * np.exp(-2 * GOAL_TIME) * settled.hand_at_end
@@ -118,14 +118,14 @@ def test_the_server_stops_where_it_is_when_the_goal_time_is_over(result, runs):
 
 
 def test_position_mode_is_slower_than_the_plan_and_gives_up(result, runs):
-    summary = summarised(runs["position"], result.solution.scenario.table.depth)
+    summary = summarised(runs["position"], result.solution.scenario.object.depth)
     assert summary.outcomes[0].startswith("gave up at 0.") and "rad off" in summary.outcomes[0]
     assert "right_j3" in summary.fast
     assert summary.delay is None
 
 
 def test_position_with_inverse_dynamics_follows_closely(result, runs):
-    summary = summarised(runs["position_w_id"], result.solution.scenario.table.depth)
+    summary = summarised(runs["position_w_id"], result.solution.scenario.object.depth)
     assert summary.outcomes == ("followed to the end",)
     assert max(joint.error_max for joint in summary.joints) < 0.1
     assert summary.hand_final < 5e-3 < summary.hand_max < 0.06
@@ -169,7 +169,7 @@ def test_at_rest_before_and_after_the_object_is_in_balance(result, solved):
 def test_streamed_torques_alone_do_not_hold_the_motion(result):
     # The grasps push on each other by some 30 N through points: soft springs cannot keep that from running off.
     run = dry_run(result.solution, "torque", 0.5, trials=1)
-    summary = summarised(run, result.solution.scenario.table.depth)
+    summary = summarised(run, result.solution.scenario.object.depth)
     assert summary.hand_max > 0.1
     assert summary.delay is None
     # It grows from nothing, by how much until the start depends on the posture.

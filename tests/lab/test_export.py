@@ -46,7 +46,7 @@ def folder(result: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_manufacturers_frames_put_the_gripper_where_the_solution_has_it(result, trajectory):
-    solution, robot = result.solution, result.solution.scenario.robot
+    solution, robot = result.solution, result.solution.scenario.first("robot")
     world = translation(solution.scenario.task.standing_distance, 0.0, robot.base_height) @ rotation_z(np.pi)
     tip = np.array([*FLANGE_IN_LAST_LINK[:2], FLANGE_IN_LAST_LINK[2] + robot.tool.length, 1.0])
     knots = np.searchsorted(trajectory.time, solution.time - 1e-9)

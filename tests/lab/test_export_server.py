@@ -123,7 +123,7 @@ def test_leaving_the_plan_is_said(result: Any, tmp_path: Path, capsys: pytest.Ca
 def _stretched(solution: Solution, factor: float) -> Solution:
     robot = solution.agents[1]
     slow = replace(robot, v=robot.v / factor, a=robot.a / factor**2)
-    longer = replace(solution.scenario, duration=factor * solution.scenario.duration)
+    longer = solution.scenario.replace({"duration": factor * solution.scenario.duration})
     return replace(solution, scenario=longer, time=factor * solution.time, agents=(solution.agents[0], slow))
 
 

@@ -95,7 +95,7 @@ def test_the_object_and_the_load_of_its_motion(truth: Any) -> None:
 @pytest.mark.parametrize("up", ["Y"])
 def test_any_axis_may_point_up(truth: Any, recorded: RecordedLift, up: str) -> None:
     turned = replace(truth.recording, points=truth.recording.points @ TO_Z_UP[up], up=None)
-    lift = recorded_lift(turned, replace(truth.mapping, up=up), None, CUTOFF)
+    lift = recorded_lift(turned, truth.mapping.changed(up=up), None, CUTOFF)
     np.testing.assert_allclose(lift.q, recorded.q, atol=1e-6)
 
 
@@ -171,7 +171,7 @@ def test_wrong_recordings_are_refused_with_the_reason(truth: Any) -> None:
 
     def refused(match: str, recording: Recording = recording, **changes: object) -> None:
         with pytest.raises(InputError, match=match):
-            recorded_lift(recording, replace(mapping, **changes), None, CUTOFF)
+            recorded_lift(recording, mapping.changed(**changes), None, CUTOFF)
 
     refused("up = 'Y'.*says \"Z\"", up="Y")
     refused("'m': cannot be the unit of length.*units = \"mm\" would make it", replace(recording, units="m"))
@@ -195,7 +195,7 @@ def test_wrong_recordings_are_refused_with_the_reason(truth: Any) -> None:
     for label in ("STER", "XIPH", "C7", "T8"):
         apart[100:, recording.index(label)] = np.nan
     refused("trunk and pelvis are never seen in one frame", replace(recording, points=apart))
-    refused("subject.mass", subject=replace(mapping.subject, mass=0.0))
-    refused("subject.sex", subject=replace(mapping.subject, sex=""))
+    refused("subject.mass", subject=mapping.subject.changed(mass=0.0))
+    refused("subject.sex", subject=mapping.subject.changed(sex=""))
     with pytest.raises(InputError, match="cutoff = 60"):
         recorded_lift(recording, mapping, None, 60.0)

@@ -7,10 +7,11 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots import sawyer_description as described
 from liftopt.multibody.robots.sawyer import sawyer_agent, sawyer_chain, sawyer_root
 
-BARE = {"standing_distance": 1.9, "base_height": 0.915, "tool_length": 0.0, "tool_mass": 0.0}
+BARE = {"place": facing(1.9), "base_height": 0.915, "tool_length": 0.0, "tool_mass": 0.0}
 GRIPPER = BARE | {"tool_length": 0.15, "tool_mass": 0.4}
 TO_TABLE_3 = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
 RNG = np.random.default_rng(1)
@@ -86,7 +87,7 @@ def test_urdf_kinematics_equal_textbook_dh_matrices(given, textbook_end, frame_p
     model = sawyer_agent(**given).model
     chain = sawyer_chain(**{key: given[key] for key in ("base_height", "tool_length", "tool_mass")})
     for q in RNG.uniform(-np.pi, np.pi, (100, 10)):
-        expected = sawyer_root(1.9) @ textbook_end(chain.rows, q)
+        expected = sawyer_root(facing(1.9)) @ textbook_end(chain.rows, q)
         np.testing.assert_allclose(frame_pose(model, "robot_grasp", q), expected, rtol=0.0, atol=1e-12)
 
 
@@ -137,7 +138,7 @@ def test_posture_reaches_the_middle_of_the_default_lift_elbow_up(frame_pose):
 
 @pytest.mark.parametrize("tool", [(0.0, 0.0), (0.15, 0.4), (0.15, 0.0), (0.0, 0.4)])
 def test_bodies_are_physical_with_any_tool(tool, assert_bodies_are_physical):
-    agent = sawyer_agent(standing_distance=1.7, base_height=0.5, tool_length=tool[0], tool_mass=tool[1])
+    agent = sawyer_agent(place=facing(1.7), base_height=0.5, tool_length=tool[0], tool_mass=tool[1])
     assert_bodies_are_physical(agent.model)
     assert agent.model.existFrame("robot_tool") == (tool != (0.0, 0.0))
 
@@ -145,7 +146,6 @@ def test_bodies_are_physical_with_any_tool(tool, assert_bodies_are_physical):
 @pytest.mark.parametrize(
     ("key", "change"),
     [
-        ("task.standing_distance", {"standing_distance": 0.4}),
         ("robot.base_height", {"base_height": float("nan")}),
         ("robot.tool.length", {"tool_length": -0.01}),
         ("robot.tool.mass", {"tool_mass": "heavy"}),

@@ -56,5 +56,5 @@ def test_chain_and_urdf_are_the_same_body(textbook_end):
 def test_refuses_by_name(key, value):
     with pytest.raises(InputError) as error:
         lifted_table(**(SIZES | {key: value}))
-    assert error.value.key == f"table.{key}"
+    assert error.value.key == f"object.{key}"
     assert error.value.value is value

@@ -10,6 +10,7 @@ import pytest
 
 from liftopt.multibody.agent import Agent, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.multibody.trajectory import agent_trajectory, free_flyer_state, object_trajectory
@@ -41,12 +42,12 @@ def swinging_arm() -> Agent:
         model.appendBodyToJoint(parent, body, pin.SE3.Identity())
     model.addFrame(pin.Frame("tip", parent, 0, pin.SE3(np.eye(3), np.array([0.0, 0.1, 0.3])), pin.FrameType.OP_FRAME))
     ones = np.ones(3)
-    return Agent("swing", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
+    return Agent("swing", "robot", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
 
 
 AGENTS = {
     "human": lambda: human_agent(Subject(1.75, 75.0, "male")),
-    "robot": lambda: sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4),
+    "robot": lambda: sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4),
     "swing": swinging_arm,
 }
 

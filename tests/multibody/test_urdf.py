@@ -12,13 +12,14 @@ import pytest
 import yourdfpy
 
 from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
 
 @pytest.fixture(scope="module")
 def agents():
-    robot = sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4)
+    robot = sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
     return {"human": human_agent(Subject(1.63, 62.0, "female")), "robot": robot}
 
 

@@ -12,6 +12,7 @@ import pytest
 
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
@@ -77,7 +78,7 @@ def _build(name: str) -> pin.Model:
     if name == "human":
         return human_agent(Subject(stature=1.75, mass=75.0, sex="male")).model
     if name == "sawyer":
-        return sawyer_agent(standing_distance=1.9, base_height=0.915, tool_length=0.15, tool_mass=0.4).model
+        return sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4).model
     if name == "table":
         return lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02).model
     if name == "panda":

@@ -43,7 +43,7 @@ def test_subject_reaches_the_model() -> None:
 
 
 def test_poses_put_the_grasp_points_where_the_scenario_says() -> None:
-    entries = ["table.depth=0.6", "table.height=0.1", "task.start.height=1.0", "task.end.human_distance=free"]
+    entries = ["object.depth=0.6", "object.height=0.1", "task.start.height=1.0", "task.end.human_distance=free"]
     scenario = load_scenario("table5", entries)
     task, table = task_of(scenario), object_of(scenario)
     # 0.40 m to the grasp and half of 0.6 m; 1.0 m and half of 0.1 m; sideways free, level.
@@ -60,7 +60,7 @@ def test_a_tilted_object_has_its_grasp_points_about_the_height_and_the_robots_ed
     pitch: float,
 ) -> None:
     """The human's grasp is as far ahead as was asked; depth x sine apart in height, with the height midway."""
-    scenario = load_scenario("table5", ["table.depth=0.6", "table.height=0.1", f"task.end.pitch_deg={pitch}"])
+    scenario = load_scenario("table5", ["object.depth=0.6", "object.height=0.1", f"task.end.pitch_deg={pitch}"])
     end, table = task_of(scenario).end, object_of(scenario)
     turn = pin.Quaternion(pin.rpy.rpyToMatrix(0.0, np.radians(pitch), 0.0)).coeffs()
     data = table.model.createData()
@@ -74,7 +74,7 @@ def test_a_tilted_object_has_its_grasp_points_about_the_height_and_the_robots_ed
 def test_limits_and_weights_are_passed_on_in_the_tasks_units() -> None:
     entries = [
         "limits.table_pitch_deg=12", "limits.table_yaw_deg=7", "limits.max_grasp_force=150",
-        "limits.balance_tolerance=0.5", "objective.human_weight=2", "objective.robot_weight=3",
+        "limits.balance_tolerance=0.5", "human.weight=2", "robot.weight=3",
         "objective.acceleration_weight=4", "objective.force_weight=5", "duration=3",
     ]  # fmt: skip
     task = task_of(load_scenario("table5", entries))

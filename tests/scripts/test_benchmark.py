@@ -176,7 +176,7 @@ def test_varied_scenarios_are_kept_in_their_ranges_with_their_references() -> No
         for key, (lower, upper) in scenarios.RANGES.items():
             value: Any = scenario
             if key == "clearance":
-                value = scenario.task.standing_distance - scenario.task.start.human_distance - scenario.table.depth
+                value = scenario.task.standing_distance - scenario.task.start.human_distance - scenario.object.depth
             else:
                 for name in key.split("."):
                     value = getattr(value, name)

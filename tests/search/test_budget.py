@@ -22,7 +22,7 @@ SMALL = ("solver.tries=6", "solver.starts=2", "solver.intervals=16", "solver.tim
 CASES = {
     "solved": SMALL,
     "out of reach": ("task.standing_distance=2.3", *SMALL),
-    "too heavy and too fast": ("duration=0.28", "table.mass=10", *SMALL),
+    "too heavy and too fast": ("duration=0.28", "object.mass=10", *SMALL),
 }
 
 
@@ -111,7 +111,7 @@ def test_an_unsolvable_lift_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> N
 
     for kind in spent:
         monkeypatch.setattr(kind, "solve", counted(kind))
-    solution = lift(load_scenario("table5", ["duration=0.28", "table.mass=10", "solver.time_limit=3600"]))
+    solution = lift(load_scenario("table5", ["duration=0.28", "object.mass=10", "solver.time_limit=3600"]))
     assert not solution.solved and solution.reasons
     # At 0.8 and 8 ms on an idle processor of 2023: 12 s of one, shared by two workers for the most part.
     assert spent[Banded] < 13e3 and spent[Ipopt] < 310

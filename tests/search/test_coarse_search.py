@@ -101,7 +101,7 @@ def test_the_chance_of_something_new_is_the_share_of_what_was_found_once() -> No
 
 def test_where_an_optimum_was_found_once_the_best_are_varied() -> None:
     """At least one turn of variations; Pinocchio's derivatives judge the optima."""
-    overrides = ["table.mass=9", "duration=5", "task.start.human_distance=free", "task.end.human_distance=free"]
+    overrides = ["object.mass=9", "duration=5", "task.start.human_distance=free", "task.end.human_distance=free"]
     search, found = _search(*overrides)
     candidates = coarse_search(search, found, 12)
     assert candidates and int(search.notes[-1].split()[3]) >= TURN

@@ -69,7 +69,7 @@ def test_a_person_who_cannot_reach_is_named() -> None:
 @pytest.mark.parametrize(("cap", "mass"), [(5.0, 2.0), (8.0, 4.0)])
 def test_a_grasp_too_weak_lacks_what_half_the_weight_asks(cap: float, mass: float) -> None:
     """Two hands at the edges of a level body carry half its weight each."""
-    obstacles = _obstacles(f"limits.max_grasp_force={cap}", f"table.mass={mass}")
+    obstacles = _obstacles(f"limits.max_grasp_force={cap}", f"object.mass={mass}")
     assert [(o.constraint, o.unit) for o in obstacles] == [("grasp_force", "times the limit")] * 2
     for obstacle in obstacles:
         # The bisection ends within 1 %, on the side that holds.
@@ -78,7 +78,7 @@ def test_a_grasp_too_weak_lacks_what_half_the_weight_asks(cap: float, mass: floa
 
 
 def test_a_weak_joint_is_named() -> None:
-    obstacles = _obstacles("table.mass=40", "limits.max_grasp_force=2000")
+    obstacles = _obstacles("object.mass=40", "limits.max_grasp_force=2000")
     assert obstacles
     for obstacle in obstacles:
         assert (obstacle.constraint, obstacle.unit) == ("torque", "times the limit")
@@ -119,7 +119,7 @@ def test_a_half_space_that_keeps_the_hand_away_is_named() -> None:
 
 def test_a_load_that_some_posture_holds_is_not_called_too_heavy() -> None:
     """20 kg: the search fails from most seeds, but not from all; a posture that holds it is the proof."""
-    assert _obstacles("table.mass=20", "limits.max_grasp_force=2000") == []
+    assert _obstacles("object.mass=20", "limits.max_grasp_force=2000") == []
 
 
 @pytest.mark.parametrize(("rest", "ramps"), [("velocity", 2 / 3), ("acceleration", 2.0)])

@@ -15,8 +15,8 @@ from scipy.optimize import minimize
 from liftopt.collocation.solvers.banded import Banded
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
-from liftopt.scenario.build import robot_of
-from liftopt.scenario.model import load_scenario, scenario_to_dict, with_overrides
+from liftopt.scenario.build import agent_of
+from liftopt.scenario.model import load_scenario
 from liftopt.search import suggested_changes as suggested_changes
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
@@ -28,9 +28,9 @@ from liftopt.solution.summary import summary_dict
 
 FAR = ("task.standing_distance=2.3",)
 MUCH_TOO_FAR = ("task.standing_distance=3",)
-HEAVY = ("table.mass=40",)
+HEAVY = ("object.mass=40",)
 WEAK = ("limits.max_grasp_force=8", "duration=8")
-FAST = ("duration=0.27", "table.mass=6", "solver.starts=3")
+FAST = ("duration=0.27", "object.mass=6", "solver.starts=3")
 BANDED = ("solver.name=banded", "solver.starts=2")
 
 
@@ -50,7 +50,7 @@ def _value(solution: Solution, *keys: str) -> float:
 
 def _farthest(height: float) -> float:
     """Return the largest distance of feet and base at which the robot's hand gets to 0.85 m ahead of the feet."""
-    robot = robot_of(load_scenario("table5", FAR))
+    robot = agent_of(load_scenario("table5", FAR), "robot")
     model, limits = robot.reduced(), robot.limits
     data, frame = model.createData(), model.getFrameId(robot.grasp_frame)
 
@@ -96,7 +96,7 @@ def test_an_object_too_heavy_for_two_grasps_is_to_weigh_what_they_hold() -> None
     """Two hands of 8 N hold 16 N, and 9.81 N hold 2 kg; steps of 0.1 kg and 1 N, and hardly any acceleration in 8 s."""
     solution = _solution(*WEAK)
     assert {(r.constraint, r.unit) for r in solution.reasons} == {("grasp_force", "times the limit")}
-    assert _value(solution, "table.mass") == pytest.approx(np.floor(10 * 16 / 9.81) / 10)
+    assert _value(solution, "object.mass") == pytest.approx(np.floor(10 * 16 / 9.81) / 10)
     assert _value(solution, "limits.max_grasp_force") == np.ceil(2 * 9.81 / 2)
 
 
@@ -128,18 +128,18 @@ def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, 
     ]
     assert solution.suggested_changes
     for change in solution.suggested_changes:
-        changes = [f"{key}={value}" for key, value in zip(change.keys, change.values, strict=True)]
-        assert lift(with_overrides(solution.scenario, changes), cache=_workshop()).solved
+        changes = dict(zip(change.keys, change.values, strict=True))
+        assert lift(solution.scenario.replace(changes), cache=_workshop()).solved
 
 
 def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
     scenario = load_scenario("table5", [*BANDED, *FAR])
-    before = scenario_to_dict(scenario)
+    before = scenario.to_dict()
     search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
     assert suggested_changes.SuggestedChanges(search, [], work=0.0).against(_solution(*FAR).reasons) == ()
     search.deadline = time.monotonic()
     assert suggested_changes.SuggestedChanges(search, []).against(_solution(*FAR).reasons) == ()
-    assert scenario_to_dict(scenario) == before
+    assert scenario.to_dict() == before
 
 
 def test_a_change_that_leaves_what_a_model_can_be_is_no_remedy() -> None:

@@ -138,7 +138,7 @@ def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_
         assert neighbour(SolverCache(), coarse, 40, ("banded", "ipopt"), np.inf, lambda line: None, incumbent) is None
     monkeypatch.setattr(Banded, "solve", fail_on_40)
     monkeypatch.setattr(Ipopt, "solve", lambda self, x0, **_: replace(coarse.result, converged=False))
-    search = Search(replace(coarse.scenario), SolverCache(), RestToRestSpline(80), lambda line: None)
+    search = Search(coarse.scenario, SolverCache(), RestToRestSpline(80), lambda line: None)
     best = finer(search, [coarse], 80)
     assert best is not None and best.solved and best.origin is coarse
 

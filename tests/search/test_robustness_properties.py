@@ -23,12 +23,11 @@ from liftopt.multibody.dh import BodyInertia, DHChain, DHRow
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 from liftopt.scenario.build import agents_of, object_of
-from liftopt.scenario.model import Scenario, load_scenario, scenario_from_dict, scenario_to_dict
-from liftopt.scenario.schema import Choice, Name, Number, Section, Whole, entries
+from liftopt.scenario.model import Scenario, scenario_from_dict
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
-from liftopt.storage.result_folder import URDF_FILES
 from liftopt.storage.urdf_check import read_model
 from liftopt.storage.writer import save
 
@@ -40,46 +39,13 @@ SLOW = settings(
 )
 
 
-def _section(of: type[Any]) -> st.SearchStrategy[dict[str, Any]]:
-    """Return any values that the entries of a section allow, each for itself."""
-    return st.fixed_dictionaries({entry.name: _entry(entry.name, entry.kind, entry.default) for entry in entries(of)})
-
-
-def _entry(name: str, kind: Any, default: Any) -> st.SearchStrategy[Any]:
-    if isinstance(kind, Section):
-        return _section(kind.of)
-    if isinstance(kind, Number):
-        numbers = st.floats(kind.low, kind.high, exclude_min=kind.open_low)
-        return numbers if kind.word is None else numbers | st.just(kind.word)
-    if isinstance(kind, Whole):
-        return st.integers(kind.low, kind.high)
-    if isinstance(kind, Choice):
-        return st.sampled_from(kind.values)
-    if isinstance(kind, Name):
-        return st.from_regex(r"[A-Za-z0-9é][\w .+-]{0,30}\w", fullmatch=True)
-    return st.just(default)
-
-
 def _accepted(data: dict[str, Any]) -> Scenario | None:
+    data["object"].pop("name")
     try:
         return scenario_from_dict(data)
     except InputError as error:
         assert "\n" not in str(error)
         return None
-
-
-SCENARIOS = _section(Scenario).map(_accepted).filter(lambda scenario: scenario is not None)
-
-
-@settings(SLOW, max_examples=100)
-@given(data=_section(Scenario))
-def test_a_scenario_of_allowed_entries_is_taken_or_refused_for_a_reason_that_names_a_key(data: dict[str, Any]) -> None:
-    try:
-        scenario = scenario_from_dict(data)
-    except InputError as error:
-        assert error.key.split(".")[0] in scenario_to_dict(load_scenario("table5"))
-        return
-    assert scenario_from_dict(scenario_to_dict(scenario)) == scenario
 
 
 @pytest.fixture(scope="module")
@@ -102,19 +68,20 @@ def _moved(pattern: Solution, scenario: Scenario, seed: int) -> Solution:
         time=np.linspace(0.0, scenario.duration, knots),
         agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
         object=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
-        urdfs={URDF_FILES[name]: text for name, text in texts.items()},
+        urdfs={urdf_files(scenario)[name]: text for name, text in texts.items()},
     )
 
 
 @settings(SLOW, max_examples=8)
-@given(scenario=SCENARIOS, seed=st.integers(0, 2**32 - 1))
+@given(data=st.data(), seed=st.integers(0, 2**32 - 1))
 def test_any_motion_of_any_scenario_is_read_back_as_it_was_written(
-    scenario: Scenario, seed: int, pattern: Solution, tmp_path: Path
+    data: st.DataObject, seed: int, scenario_tables: st.SearchStrategy[Any], pattern: Solution, tmp_path: Path
 ) -> None:
+    scenario = data.draw(scenario_tables.map(_accepted).filter(lambda found: found is not None))
     try:
         written = _moved(pattern, scenario, seed)
     except InputError as error:  # a robot or an object that cannot be built
-        assert error.key.split(".")[0] in ("robot", "table", "task", "human")
+        assert error.key.split(".")[0] in ("robot", "object", "task", "human")
         return
     save(written, tmp_path / "result")
     read = load_result(tmp_path / "result")
@@ -159,7 +126,7 @@ def chains(draw: st.DrawFn) -> Agent:
     text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes={}, grasp="random_grasp"))
     ones = np.ones(len(rows))
     limits = JointLimits(-3.0 * ones, 3.0 * ones, 10.0 * ones, -100.0 * ones, 100.0 * ones)
-    return Agent("random", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
+    return Agent("random", "robot", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
 
 
 @settings(SLOW, max_examples=60)

@@ -130,7 +130,7 @@ INFEASIBLE = {
         ["task.end.height=2.1"], ["infeasible: out of reach at the end of the lift", "grasp stays 0.", "m short"],
     ),
     "too heavy": (
-        ["table.mass=40"], ["infeasible: too weak at the start of the lift", "times the torque limit of robot_Q"],
+        ["object.mass=40"], ["infeasible: too weak at the start of the lift", "times the torque limit of robot_Q"],
     ),
     "weak grasp": (["limits.max_grasp_force=5"], ["infeasible: too weak", "1.9", "times the grasp force cap of"]),
 }  # fmt: skip

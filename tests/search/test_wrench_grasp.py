@@ -90,7 +90,7 @@ def test_share_moves_with_the_weights_only_where_it_can(solved: Callable[..., An
     shares = {}
     for grasps, several in (((), (0.1, 10.0)), (BOTH, (0.1, 1.0, 10.0))):
         for weight in several:
-            weights = f"objective.human_weight={weight**0.5}", f"objective.robot_weight={weight**-0.5}"
+            weights = f"human.weight={weight**0.5}", f"robot.weight={weight**-0.5}"
             solution = solved("table5", *grasps, *weights, *CHEAP, "task.rest=acceleration").solution
             assert solution.solved, solution.status
             shares[bool(grasps), weight] = np.array(load_share(solution)["agents"]["human"]["share"])

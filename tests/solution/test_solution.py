@@ -28,11 +28,11 @@ CASES = {
     "free": ("table5_free", "solver.starts=2"),
     "fine": ("table5", "solver.intervals=40", ONE_START),
     "coarse": ("table5", "solver.intervals=10", ONE_START),
-    "no human weight": ("table5", "objective.human_weight=0", ONE_START),
-    "no robot weight": ("table5", "objective.robot_weight=0", ONE_START),
+    "no human weight": ("table5", "human.weight=0", ONE_START),
+    "no robot weight": ("table5", "robot.weight=0", ONE_START),
     "woman lowers": (
         "table5", "task.start.height=1.3", "task.end.height=0.95", "human.sex=female", "human.stature=1.62",
-        "human.mass=60", "table.width=0.4", "robot.tool.mass=0.8", "duration=2.5", ONE_START,
+        "human.mass=60", "object.width=0.4", "robot.tool.mass=0.8", "duration=2.5", ONE_START,
     ),
     "no acceleration": ("table5", "task.rest=acceleration", ONE_START),
     "paper": (
@@ -198,7 +198,7 @@ def test_hands_stay_on_the_table_at_and_between_knots(result: Result) -> None:
 
 
 def test_grasp_positions_are_the_tables_grasp_points(result: Result) -> None:
-    model, table = result.models["table"], result.scenario.table
+    model, table = result.models["table"], result.scenario.object
     data = model.createData()
     for i, (who, ahead) in enumerate({"human": -0.5, "robot": 0.5}.items()):
         frame = model.getFrameId(f"grasp_{who}")
@@ -299,7 +299,7 @@ def test_table_is_level_and_where_the_scenario_wants_it_at_both_ends(result: Res
         assert human[2] == pytest.approx(end.height, abs=1e-6)
         assert robot[2] == pytest.approx(end.height, abs=1e-6)
         assert abs(result["table_quaternion"][k, 3]) == pytest.approx(1.0, abs=1e-9)
-        assert robot - human == pytest.approx([result.scenario.table.depth, 0.0, 0.0], abs=1e-6)
+        assert robot - human == pytest.approx([result.scenario.object.depth, 0.0, 0.0], abs=1e-6)
         if end.human_distance is not None:
             assert human[0] == pytest.approx(end.human_distance, abs=1e-6)
 
@@ -328,7 +328,7 @@ def test_urdfs_have_the_contracts_links_and_joints(result: Result) -> None:
     robot = ET.parse(result.folder / "models" / "table.urdf").getroot()
     _check_grasps(robot, {"grasp_human", "grasp_robot"})
     assert result.models["table"].njoints == 2
-    assert result.models["table"].inertias[1].mass == pytest.approx(result.scenario.table.mass, rel=1e-12)
+    assert result.models["table"].inertias[1].mass == pytest.approx(result.scenario.object.mass, rel=1e-12)
 
 
 def _check_grasps(robot: ET.Element, names: set[str]) -> None:

@@ -16,6 +16,7 @@ import pytest
 
 from liftopt.commands.cli import main
 from liftopt.errors import InputError
+from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.storage.reader import load_result
 
@@ -134,7 +135,7 @@ def test_the_same_robot_is_the_same() -> None:
     """A description read back from its own text is no other robot's."""
     from liftopt.multibody.likeness import difference
 
-    given: dict[str, Any] = dict(standing_distance=1.9, base_height=0.9, tool_length=0.15, tool_mass=0.4)
+    given: dict[str, Any] = dict(place=facing(1.9), base_height=0.9, tool_length=0.15, tool_mass=0.4)
     one = sawyer_agent(**given)
     again, longer = sawyer_agent(**given, urdf=one.urdf), sawyer_agent(**given | {"tool_length": 0.2})
     assert difference(again.model, one.model, ("robot_grasp",)) == ""

@@ -11,9 +11,10 @@ import pytest
 
 from liftopt.commands.cli import main
 from liftopt.errors import InputError
-from liftopt.scenario.model import load_scenario, scenario_to_toml
+from liftopt.scenario.model import load_scenario
 from liftopt.storage.reader import load_result
 from liftopt.storage.result_path import result_file
+from liftopt.storage.solved_scenario import scenario_or_solved
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 
@@ -23,7 +24,7 @@ def results(solved: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.Monk
     """A folder to work in, with results/table5, a scenario of the user's and an empty folder."""
     monkeypatch.chdir(tmp_path)
     shutil.copytree(solved("table5", *CHEAP).folder, Path("results", "table5"))
-    Path("lab.toml").write_text(scenario_to_toml(load_scenario()), encoding="utf-8")
+    Path("lab.toml").write_text(load_scenario().to_toml(), encoding="utf-8")
     Path("empty").mkdir()
     return Path("results")
 
@@ -36,8 +37,8 @@ def test_folder_netcdf_and_scenario_stand_for_the_result(results: Path, name: st
 
 @pytest.mark.parametrize("name", ["", "solution.nc", "scenario.toml"])
 def test_a_result_stands_for_the_scenario_that_was_solved(results: Path, name: str) -> None:
-    heavier = load_scenario(results / "table5" / name, ["table.mass=3"])
-    assert heavier == load_scenario("table5", [*CHEAP, "table.mass=3"])
+    heavier = scenario_or_solved(str(results / "table5" / name), ["object.mass=3"])
+    assert heavier == load_scenario("table5", [*CHEAP, "object.mass=3"])
 
 
 RESULT_COMMANDS = (
@@ -102,7 +103,7 @@ def test_what_is_no_result_is_told_with_what_was_meant(path: str, said: str) -> 
 @pytest.mark.usefixtures("results")
 def test_what_is_no_scenario_is_told_with_what_was_meant(path: str, said: str) -> None:
     with pytest.raises(InputError) as caught:
-        load_scenario(path)
+        scenario_or_solved(path)
     assert str(caught.value).startswith(f"{path}: ")
     assert str(caught.value).endswith(said)
 

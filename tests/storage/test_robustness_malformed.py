@@ -24,7 +24,7 @@ import pytest
 
 from liftopt.commands.cli import main
 from liftopt.files.checksum import DIGEST_BYTES, sealed
-from liftopt.scenario.model import load_scenario, scenario_to_toml
+from liftopt.scenario.model import load_scenario
 
 PATIENCE = 60  # seconds for one file, only so that a hang fails
 MODEL = "models/sawyer.urdf"
@@ -107,7 +107,7 @@ def _wrong_entry(lines: list[str], rng: random.Random) -> str:
 
 
 def test_a_hundred_malformed_scenarios_are_refused(refused: Callable[[list[str]], str], tmp_path: Path) -> None:
-    rng, text, path = random.Random(1), scenario_to_toml(load_scenario("table5")), tmp_path / "scenario.toml"
+    rng, text, path = random.Random(1), load_scenario("table5").to_toml(), tmp_path / "scenario.toml"
     count = readable = 0
     while count < 100:
         by_entry = rng.random() < 0.7

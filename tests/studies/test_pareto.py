@@ -119,7 +119,7 @@ def test_command_writes_table_json_and_figures(
     ("words", "said"),
     [
         (["--points", "1"], "--points = 1"),
-        (["--set", "objective.human_weight=0", "--set", "objective.robot_weight=0"], "objective.human_weight"),
+        (["--set", "human.weight=0", "--set", "robot.weight=0"], "human.weight"),
     ],
 )
 def test_wrong_use_is_refused(words: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

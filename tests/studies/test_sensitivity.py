@@ -17,14 +17,15 @@ from liftopt.commands.cli import main
 from liftopt.commands.sensitivity import study_dict, table
 from liftopt.control.replanning import Replanner
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import Scenario, load_scenario, scenario_to_toml
+from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.solve import lift
 from liftopt.solution.summary import limit_share
-from liftopt.studies.sensitivity import PARAMETERS, Parameter, Study, changed, figures, study
+from liftopt.studies.sensitivity import Parameter, Study, changed, figures, parameters_of, study
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
+PARAMETERS = parameters_of(load_scenario())
 
 
 @pytest.fixture(scope="module")
@@ -224,7 +225,7 @@ def test_free_and_impossible_parameters_are_left_out_with_a_reason(replanner: Re
 
 def test_command_tells_writes_and_takes_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shipped = load_scenario("table5_free", ENTRIES)
-    (tmp_path / "scenario.toml").write_text(scenario_to_toml(shipped), encoding="utf-8")
+    (tmp_path / "scenario.toml").write_text(shipped.to_toml(), encoding="utf-8")
     assert main(["sensitivity", str(tmp_path), "--plot", str(tmp_path / "bars.svg")]) == 0
     text = capsys.readouterr().out
     for word in ("stature", "object mass", "duration", "grasp from feet is left out"):
@@ -244,7 +245,7 @@ def test_json_holds_every_slope(near: Study) -> None:
     ("words", "said"),
     [
         (["--plot", "bars.gif"], "must end in .svg"),
-        (["--set", "table.mass=-1"], "table.mass"),
+        (["--set", "object.mass=-1"], "object.mass"),
         (["nowhere"], "no such"),
     ],
 )

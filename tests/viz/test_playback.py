@@ -65,7 +65,7 @@ def test_the_table_follows_its_own_spline(solution: Any, playback: Playback) -> 
 
 
 def test_hands_stay_on_the_table(solution: Any, playback: Playback) -> None:
-    table = solution.scenario.table
+    table = solution.scenario.object
     track = playback.bodies[solution.object.name]
     for side, force in zip((-1.0, 1.0), playback.forces.values(), strict=True):
         edge = np.array([side * table.depth / 2, 0.0, -table.height / 2])

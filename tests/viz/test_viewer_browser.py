@@ -182,7 +182,7 @@ def test_every_camera_preset_shows_what_it_says_upright(opened: Any, lift: Any, 
     """A point above another must be above it on the screen, and what a preset is for between the panels."""
     base = lift.solution.scenario.task.standing_distance
     hands = [track.grasp_position[k].tolist() for track in lift.solution.agents for k in (0, 5, 10)]
-    robot = [[base, 0.0, 0.0], [base, 0.0, lift.solution.scenario.robot.base_height]]
+    robot = [[base, 0.0, 0.0], [base, 0.0, lift.solution.scenario.first("robot").base_height]]
     for name, points in {
         "three-quarter": PERSON + robot + hands,
         "side": PERSON + robot + hands,
@@ -248,7 +248,7 @@ def test_the_floor_is_darker_beside_feet_and_pedestal(opened: Any) -> None:
 def test_two_lifts_side_by_side_and_one_as_a_ghost(
     lift: Any, solved: Callable[..., Any], open_page: Callable[..., Any], tmp_path: Path
 ) -> None:
-    heavy = solved("table5", *CHEAP, "table.mass=3", f"name={LONG_NAME}")
+    heavy = solved("table5", *CHEAP, "object.mass=3", f"name={LONG_NAME}")
     for ghost, aside in ((False, APART), (True, 0.0)):
         file = tmp_path / f"{ghost}.html"
         view(lift.folder, other=heavy.folder, ghost=ghost, html=file, progress=lambda line: None)

@@ -15,7 +15,7 @@ from liftopt.lab.comparison.motion_start import lift_start
 from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.robot.robot_record import RobotRecord
-from liftopt.scenario.build import robot_of
+from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
@@ -99,7 +99,7 @@ def _person(dense: Solution, records: Sequence[RecordedLift], notes: list[str]) 
         vertical = [record.over_lift(record.hand_force[:, 2], SAMPLES) for record in loaded]
         label = "Vertical force (mocap)"
         yield _compared("hand_force", "mocap", label, "N", dense, human.grasp_force[:, 2], vertical)
-    person = dense.scenario.human
+    person = dense.scenario.first("person")
     for record in records:
         subject, start = record.subject, record.carried or (record.time[0], record.time[-1])
         what = "while the object is carried" if record.carried else "all of the recording, which shows no object"
@@ -145,7 +145,7 @@ def _robot(dense: Solution, records: Sequence[RobotRecord], notes: list[str]) ->
     if not records:
         return
     duration, agent = float(dense.time[-1]), dense.agents[1]
-    curves = robot_curves(agent, dense.scenario.robot.model)
+    curves = robot_curves(agent, dense.scenario.first("robot").model)
     starts = [lift_start(record, dense.time, agent.q[:, agent.moving]) for record in records]
     angles = np.stack(
         [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
@@ -179,7 +179,7 @@ def _robot(dense: Solution, records: Sequence[RobotRecord], notes: list[str]) ->
 
 def _other_reading(dense: Solution, q: Array, effort: Array) -> list[str]:
     """Return a note if efforts (S, 7) at angles q (S, 7) fit better with another sign, or as torques beyond gravity."""
-    robot = robot_of(dense.scenario, dense.urdfs)
+    robot = agent_of(dense.scenario, dense.agents[1].name, dense.urdfs)
     moving = dense.agents[1].moving
     full, data = np.zeros((len(q), robot.model.nq)), robot.model.createData()
     full[:, moving] = q

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import tomli_w
+from pydantic import BeforeValidator, Field, model_validator
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.files.entries import entry
 from liftopt.files.new_file import write_new
+from liftopt.files.section import Section
 from liftopt.lab.forces.calibration_series import ANY, DECIMALS, Series, mean_series, read_series
 from liftopt.lab.forces.voltage_divider import Divider
 from liftopt.lab.mocap.recording import Array
 from liftopt.lab.mocap.text_file import read_text
-from liftopt.scenario.schema import Choice, Kind, section
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -31,41 +33,36 @@ SCATTER = 0.05  # of a curve's range: the repeatability that data sheets of such
 SMALLEST_STEP = 0.5 * 10.0**-DECIMALS  # V or N, between points of a curve
 
 
-@dataclass(frozen=True)
-class Rising(Kind):
-    """A list of finite numbers from 0 on, each larger than the one before."""
-
-    @property
-    def allowed(self) -> str:  # noqa: D102
-        return "a list of two or more numbers, 0 or more, each larger than the one before"
-
-    def accept(self, key: str, value: Any) -> tuple[float, ...]:  # noqa: D102
-        if not isinstance(value, (list, tuple)) or len(value) < 2:
-            raise self.refuse(key, value)
-        if not all(isinstance(x, (int, float)) and not isinstance(x, bool) and np.isfinite(x) for x in value):
-            raise self.refuse(key, value)
-        if value[0] < 0.0 or any(b - a < SMALLEST_STEP for a, b in pairwise(value)):
-            raise self.refuse(key, value)
-        return tuple(map(float, value))
-
-    def plain(self, value: Any) -> list[float]:  # noqa: D102
-        return list(value)
+def _rising(value: object) -> tuple[float, ...]:
+    """Return a list of finite numbers from 0 on, each larger than the one before; raises ValueError for others."""
+    if not isinstance(value, (list, tuple)) or len(value) < 2:
+        raise ValueError("too short")
+    if not all(isinstance(x, (int, float)) and not isinstance(x, bool) and np.isfinite(x) for x in value):
+        raise ValueError("no numbers")
+    if value[0] < 0.0 or any(b - a < SMALLEST_STEP for a, b in pairwise(value)):
+        raise ValueError("not rising")
+    return tuple(map(float, value))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Curve:
+RISING = "a list of two or more numbers, 0 or more, each larger than the one before"
+Rising = Annotated[tuple[float, ...], BeforeValidator(_rising)]
+
+
+class Curve(Section):
     """Force over voltage of one sensor.
 
     Raises:
         InputError: the lists are not of one length.
     """
 
-    voltage: Annotated[tuple[float, ...], Rising("output of the divider in V")]
-    force: Annotated[tuple[float, ...], Rising("force on the sensor in N")]
+    voltage: Annotated[Rising, entry("output of the divider in V", RISING)]
+    force: Annotated[Rising, entry("force on the sensor in N", RISING)]
 
-    def __post_init__(self) -> None:
+    @model_validator(mode="after")
+    def _of_one_length(self) -> Curve:
         if len(self.voltage) != len(self.force):
             raise InputError("force", f"{len(self.force)} numbers", f"there are {len(self.voltage)} voltages")
+        return self
 
     def of(self, voltage: Array) -> Array:
         """Return the force [N] at voltages [V]; beyond the ends of the curve, that at its end.
@@ -86,33 +83,24 @@ class Curve:
         return PchipInterpolator(self._knots, (*lead, *self.force))
 
 
-@dataclass(frozen=True)
-class Curves(Kind):
-    """A curve for every sensor that has one of its own, and one named ``all`` for the others."""
-
-    @property
-    def allowed(self) -> str:  # noqa: D102
-        return f"a section with a curve for each sensor, or one named {ANY}"
-
-    def accept(self, key: str, value: Any) -> dict[str, Curve]:  # noqa: D102
-        if not isinstance(value, Mapping) or not value:
-            raise self.refuse(key, value)
-        curves = {str(name).lower(): section(Curve).accept(f"{key}.{name}", curve) for name, curve in value.items()}
-        if len(curves) < len(value):
-            raise self.refuse(key, ", ".join(map(str, value)))
-        return curves
-
-    def plain(self, value: Any) -> dict[str, Any]:  # noqa: D102
-        return {name: section(Curve).plain(curve) for name, curve in value.items()}
+def _by_sensor(value: object) -> dict[str, Any]:
+    """Return curves by sensor, whose case does not count; raises ValueError where that leaves one of two, or none."""
+    curves = {str(name).lower(): curve for name, curve in value.items()} if isinstance(value, Mapping) else {}
+    if not isinstance(value, Mapping) or not value or len(curves) < len(value):
+        raise ValueError("no curves")
+    return curves
 
 
-@dataclass(frozen=True, kw_only=True)
-class Calibration:
+class Calibration(Section):
     """What is known of the sensors and their wiring."""
 
-    schema: Annotated[int, Choice("version of the calibration format", (1,))] = 1
-    divider: Divider = field(default_factory=Divider)
-    curves: Annotated[dict[str, Curve], Curves("force over voltage by sensor")]
+    version: Annotated[Literal[1], Field(alias="schema", description="version of the calibration format")] = 1
+    divider: Divider = Divider()
+    curves: Annotated[
+        dict[str, Curve],
+        BeforeValidator(_by_sensor),
+        entry("force over voltage by sensor", f"a section with a curve for each sensor, or one named {ANY}"),
+    ]
 
     def curve(self, channel: str) -> Curve:
         """Return the curve of a channel.
@@ -130,7 +118,7 @@ class Calibration:
         if divider == self.divider:
             return self
         curves = {
-            name: Curve(
+            name: Curve.model_construct(
                 voltage=tuple(divider.voltage(self.divider.conductance(np.array(curve.voltage))).tolist()),
                 force=curve.force,
             )
@@ -199,7 +187,7 @@ def save_calibration(calibration: Calibration, path: Path) -> None:
     Raises:
         InputError: the file exists, or cannot be written.
     """
-    write_new("--out", path, tomli_w.dumps(section(Calibration).plain(calibration)))
+    write_new("--out", path, tomli_w.dumps(calibration.plain()))
 
 
 def load_calibration(path: Path) -> Calibration:
@@ -213,7 +201,6 @@ def load_calibration(path: Path) -> Calibration:
     except (ValueError, RecursionError) as error:
         raise InputError(str(path), NO_VALUE, f"is not valid TOML: {error}") from None
     try:
-        result: Calibration = section(Calibration).accept("", data)
+        return Calibration.checked(data)
     except InputError as error:
         raise InputError(f"{path}: {error.key}", error.value, error.allowed) from None
-    return result

@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import InputError
+from liftopt.files.entries import number, whole
+from liftopt.files.section import Section
 from liftopt.lab.mocap.recording import Array
-from liftopt.scenario.schema import Number, Whole
 
 VOLTAGE_UNITS = ("V", "mV", "counts")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Divider:
+class Divider(Section):
     """The divider and its converter: the sensor from the supply to the output, a fixed resistor from there to ground.
 
     V = R Vs / (R + Rs) with the fixed resistor R, the sensor Rs and the supply Vs (data sheet of the FSR 402, Interlink
     2010). The conductance 1 / Rs is what grows about in proportion to the force.
     """
 
-    supply: Annotated[float, Number("supply voltage of the divider", "V", 0.0, 24.0, open_low=True)] = 5.0
-    resistor: Annotated[float, Number("fixed resistor to ground", "ohm", 1.0, 1e7)] = 10_000.0
-    full_scale: Annotated[int, Whole("what the converter counts at the supply voltage", 1, 2**24)] = 1023
+    supply: Annotated[float, number("supply voltage of the divider", "V", 0.0, 24.0, open_low=True)] = 5.0
+    resistor: Annotated[float, number("fixed resistor to ground", "ohm", 1.0, 1e7)] = 10_000.0
+    full_scale: Annotated[int, whole("what the converter counts at the supply voltage", 1, 2**24)] = 1023
 
     def volts(self, values: Array, unit: str) -> Array:
         """Return readings as volts.

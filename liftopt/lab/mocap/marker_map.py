@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.files.entries import entry, number
+from liftopt.files.section import Section
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.lab.mocap.length_units import METRES
 from liftopt.lab.mocap.recording import TO_Z_UP, Recording
 from liftopt.lab.mocap.text_file import read_text
-from liftopt.scenario.schema import Choice, Kind, Number, entries, section
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -23,68 +25,80 @@ else:
 
 SHIPPED = Path(__file__).parent / "maps"
 Labels = tuple[str, ...]
+if TYPE_CHECKING:
+    Axis: TypeAlias = str
+    Unit: TypeAlias = str
+else:
+    Axis, Unit = Literal[tuple(TO_Z_UP)], Literal[(*METRES, "")]
 
 
-@dataclass(frozen=True)
-class MarkerLabels(Kind):
-    """Labels of markers: one or several."""
-
-    fewest: int
-
-    @property
-    def allowed(self) -> str:  # noqa: D102
-        return "a marker's label or a list of them" if self.fewest == 1 else f"a list of {self.fewest} labels or more"
-
-    def accept(self, key: str, value: Any) -> Labels:  # noqa: D102
-        labels = (value,) if isinstance(value, str) else value
-        if not isinstance(labels, (list, tuple)) or not all(isinstance(x, str) and x.strip() for x in labels):
-            raise self.refuse(key, value)
-        if len(set(labels)) < max(len(labels), self.fewest):
-            raise self.refuse(key, value)
-        return tuple(labels)
+def _listed(value: object) -> object:
+    """Return one label or several as a tuple of different ones; raises ValueError for anything else."""
+    labels = (value,) if isinstance(value, str) else value
+    if not isinstance(labels, (list, tuple)) or not all(isinstance(x, str) and x.strip() for x in labels):
+        raise ValueError("no labels")
+    if len(set(labels)) < len(labels):
+        raise ValueError("the same label twice")
+    return tuple(labels)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Landmarks:
+def _some(labels: Labels) -> Labels:
+    if not labels:
+        raise ValueError("no label")
+    return labels
+
+
+Listed = BeforeValidator(_listed)
+Landmark = Annotated[Labels, Listed, AfterValidator(_some)]
+Cluster = Annotated[Labels, Listed]
+
+
+def _landmark(about: str) -> Any:
+    return entry(about, "a marker's label or a list of them")
+
+
+def _cluster(about: str) -> Any:
+    return entry(about, "a list of 0 labels or more")
+
+
+class Landmarks(Section):
     """Points of the skeleton that a finger finds; where several labels are given, their mean is meant."""
 
-    asis_right: Annotated[Labels, MarkerLabels("right front spine of the pelvis", 1)]
-    asis_left: Annotated[Labels, MarkerLabels("left front spine of the pelvis", 1)]
-    psis_right: Annotated[Labels, MarkerLabels("right rear spine of the pelvis", 1)]
-    psis_left: Annotated[Labels, MarkerLabels("left rear spine of the pelvis", 1)]
-    suprasternale: Annotated[Labels, MarkerLabels("notch above the breastbone", 1)]
-    xiphoid: Annotated[Labels, MarkerLabels("lower end of the breastbone", 1)]
-    c7: Annotated[Labels, MarkerLabels("spine at the base of the neck, C7 or T1", 1)]
-    t8: Annotated[Labels, MarkerLabels("spine behind the lower end of the breastbone, T8 to T10", 1)]
-    acromion_right: Annotated[Labels, MarkerLabels("tip of the right shoulder", 1)]
-    elbow_lateral: Annotated[Labels, MarkerLabels("outer epicondyle of the right elbow", 1)]
-    elbow_medial: Annotated[Labels, MarkerLabels("inner epicondyle of the right elbow", 1)]
-    wrist_radial: Annotated[Labels, MarkerLabels("radial styloid, thumb side of the right wrist", 1)]
-    wrist_ulnar: Annotated[Labels, MarkerLabels("ulnar styloid, little finger side of the right wrist", 1)]
-    knuckle_index: Annotated[Labels, MarkerLabels("knuckle of the right index finger", 1)]
-    knuckle_little: Annotated[Labels, MarkerLabels("knuckle of the right little finger", 1)]
+    asis_right: Annotated[Landmark, _landmark("right front spine of the pelvis")]
+    asis_left: Annotated[Landmark, _landmark("left front spine of the pelvis")]
+    psis_right: Annotated[Landmark, _landmark("right rear spine of the pelvis")]
+    psis_left: Annotated[Landmark, _landmark("left rear spine of the pelvis")]
+    suprasternale: Annotated[Landmark, _landmark("notch above the breastbone")]
+    xiphoid: Annotated[Landmark, _landmark("lower end of the breastbone")]
+    c7: Annotated[Landmark, _landmark("spine at the base of the neck, C7 or T1")]
+    t8: Annotated[Landmark, _landmark("spine behind the lower end of the breastbone, T8 to T10")]
+    acromion_right: Annotated[Landmark, _landmark("tip of the right shoulder")]
+    elbow_lateral: Annotated[Landmark, _landmark("outer epicondyle of the right elbow")]
+    elbow_medial: Annotated[Landmark, _landmark("inner epicondyle of the right elbow")]
+    wrist_radial: Annotated[Landmark, _landmark("radial styloid, thumb side of the right wrist")]
+    wrist_ulnar: Annotated[Landmark, _landmark("ulnar styloid, little finger side of the right wrist")]
+    knuckle_index: Annotated[Landmark, _landmark("knuckle of the right index finger")]
+    knuckle_little: Annotated[Landmark, _landmark("knuckle of the right little finger")]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Segments:
+class Segments(Section):
     """Markers that move with each segment, besides its landmarks."""
 
-    pelvis: Annotated[Labels, MarkerLabels("pelvis", 0)] = ()
-    trunk: Annotated[Labels, MarkerLabels("rib cage", 0)] = ()
-    scapula: Annotated[Labels, MarkerLabels("right shoulder blade; it only places the shoulder's centre", 0)] = ()
-    upper_arm: Annotated[Labels, MarkerLabels("right upper arm", 0)] = ()
-    forearm: Annotated[Labels, MarkerLabels("right forearm", 0)] = ()
-    hand: Annotated[Labels, MarkerLabels("right hand without fingers", 0)] = ()
-    object: Annotated[Labels, MarkerLabels("what is lifted", 0)] = ()
+    pelvis: Annotated[Cluster, _cluster("pelvis")] = ()
+    trunk: Annotated[Cluster, _cluster("rib cage")] = ()
+    scapula: Annotated[Cluster, _cluster("right shoulder blade; it only places the shoulder's centre")] = ()
+    upper_arm: Annotated[Cluster, _cluster("right upper arm")] = ()
+    forearm: Annotated[Cluster, _cluster("right forearm")] = ()
+    hand: Annotated[Cluster, _cluster("right hand without fingers")] = ()
+    object: Annotated[Cluster, _cluster("what is lifted")] = ()
 
 
-@dataclass(frozen=True, kw_only=True)
-class Person:
+class Person(Section):
     """What markers do not tell of the person; the stature is estimated from segments if it is 0."""
 
-    sex: Annotated[str, Choice("whose segment data to use", ("male", "female", ""))] = ""
-    mass: Annotated[float, Number("body mass; 0 where it is given elsewhere", "kg", 0.0, 200.0)] = 0.0
-    stature: Annotated[float, Number("height of the person; 0 to estimate it", "m", 0.0, 2.2)] = 0.0
+    sex: Annotated[Literal["male", "female", ""], entry("whose segment data to use")] = ""
+    mass: Annotated[float, number("body mass; 0 where it is given elsewhere", "kg", 0.0, 200.0)] = 0.0
+    stature: Annotated[float, number("height of the person; 0 to estimate it", "m", 0.0, 2.2)] = 0.0
 
 
 # Which segment a landmark belongs to.
@@ -98,28 +112,29 @@ HOME: dict[str, str] = {
 TRACKED = ("trunk", "upper_arm", "forearm", "hand")
 
 
-@dataclass(frozen=True, kw_only=True)
-class MarkerMap:
+class MarkerMap(Section):
     """The mapping of one marker set.
 
     Raises:
         InputError: a key is missing, unknown or wrong, or a marker stands on two segments.
     """
 
-    schema: Annotated[int, Choice("version of the mapping format", (1,))]
-    up: Annotated[str, Choice("axis of the recording that points up", tuple(TO_Z_UP))]
-    units: Annotated[str, Choice("unit of length of the file, whatever the file states", (*METRES, ""))] = ""
+    version: Annotated[Literal[1], Field(alias="schema", description="version of the mapping format")]
+    up: Annotated[Axis, entry("axis of the recording that points up")]
+    units: Annotated[Unit, entry("unit of length of the file, whatever the file states")] = ""
     landmarks: Landmarks
-    segments: Segments = field(default_factory=Segments)
-    subject: Person = field(default_factory=Person)
+    segments: Segments = Segments()
+    subject: Person = Person()
 
-    def __post_init__(self) -> None:
+    @model_validator(mode="after")
+    def _each_marker_once(self) -> MarkerMap:
         where: dict[str, str] = {}
         for segment, labels in self.by_segment().items():
             for label in labels:
                 if label in where:
                     raise InputError(f"segments.{segment}", label, f"the marker already belongs to {where[label]}")
                 where[label] = segment
+        return self
 
     def landmark(self, name: str) -> Labels:
         """Return the labels of a landmark."""
@@ -131,8 +146,8 @@ class MarkerMap:
         result: dict[str, list[str]] = {}
         for name, segment in HOME.items():
             result.setdefault(segment, []).extend(self.landmark(name))
-        for entry in entries(Segments):
-            result.setdefault(entry.name, []).extend(getattr(self.segments, entry.name))
+        for name in Segments.model_fields:
+            result.setdefault(name, []).extend(getattr(self.segments, name))
         if result["scapula"]:
             result["scapula"].extend(self.landmark("acromion_right"))
         # One marker may stand for two landmarks of its segment (the sacrum for both rear spines).
@@ -164,8 +179,7 @@ def load_marker_map(source: str | Path) -> MarkerMap:
         data = tomllib.loads(read_text(path, "a mapping in TOML").decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:  # UnicodeDecodeError is a ValueError too
         raise InputError(str(path), NO_VALUE, f"is not valid TOML: {error}") from None
-    result: MarkerMap = section(MarkerMap).accept("", data)
-    return result
+    return MarkerMap.checked(data)
 
 
 def mapped_markers(recording: Recording, mapping: MarkerMap) -> tuple[Recording, Labels]:

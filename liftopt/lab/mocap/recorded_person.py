@@ -13,7 +13,6 @@ from liftopt.lab.mocap.scaling import ScaledSubject, measured_chain
 from liftopt.lab.mocap.tracking import TrackedMarker
 from liftopt.multibody.agent import Agent, JointLimits
 from liftopt.multibody.person.human import (
-    GRASP,
     NAME,
     VIRTUAL,
     chain_urdf,
@@ -116,4 +115,4 @@ def _agent(scaled: ScaledSubject) -> Agent:
     # Shapes are the subject's own: they are only looked at.
     shapes = placed_shapes(human_chain(scaled.subject), scaled.subject)
     text = chain_urdf(measured_chain(scaled), joint_bounds(rows, limits), shapes)
-    return Agent(NAME, text, load_model(text), (), GRASP, limits, np.zeros(len(rows)))
+    return Agent(NAME, "person", text, load_model(text), (), f"{NAME}_grasp", limits, np.zeros(len(rows)))

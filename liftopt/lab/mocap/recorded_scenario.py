@@ -63,18 +63,25 @@ def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recor
     person = lift.subject
     return scenario_from_dict(
         {
-            "schema": 1,
+            "schema": 2,
             "name": name,
             "duration": _round(lift.carried[1] - lift.carried[0]),
-            "human": {"stature": _round(person.stature), "mass": person.mass, "sex": person.sex},
-            "robot": {"model": "sawyer"},
-            "table": {"mass": mass, "depth": _round(depth), "width": WIDTH, "height": HEIGHT},
+            "agents": {
+                "human": {
+                    "kind": "person",
+                    "stature": _round(person.stature),
+                    "mass": person.mass,
+                    "sex": person.sex,
+                },
+                "robot": {"kind": "robot", "model": "sawyer", "weight": 0.0},
+            },
+            "object": {"mass": mass, "depth": _round(depth), "width": WIDTH, "height": HEIGHT},
             "task": {
                 "standing_distance": _round(float(place[:, 0].mean()) + depth + REACH),
                 "start": start,
                 "end": end,
             },
-            "objective": {"robot_weight": 0.0, "force_weight": FORCE_WEIGHT},
+            "objective": {"force_weight": FORCE_WEIGHT},
             "limits": {"table_pitch_deg": LEVEL, "table_yaw_deg": LEVEL},
         }
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
 
@@ -62,7 +61,7 @@ def scale_subject(found: Skeleton, mapping: MarkerMap) -> ScaledSubject:
         raise InputError(
             "subject.mass", NO_VALUE, "must be given in kg, for markers do not weigh: in the mapping or by --mass"
         )
-    sex = cast(Sex, person.sex)
+    sex: Sex = person.sex
     implied = _statures(found, mapping, sex, person.mass)
     weight = {name: SPREAD[name] ** -2 for name in implied}
     estimate = sum(weight[name] * implied[name] for name in implied) / sum(weight.values())

@@ -11,7 +11,6 @@ import numpy as np
 from liftopt.errors import InputError
 from liftopt.lab.mocap.marker_map import MarkerMap, Segments
 from liftopt.lab.mocap.recording import Recording
-from liftopt.scenario.schema import entries
 
 SPAN = re.compile(r"(?P<marker>.+):(?P<start>[0-9.]+)-(?P<end>[0-9.]+)")
 
@@ -84,16 +83,16 @@ def without_ignored(mapping: MarkerMap, part: TrialPart) -> MarkerMap:
     gone = {one.marker for one in part.ignored if one.start == -np.inf}
     if not gone:
         return mapping
-    for name, labels in vars(mapping.landmarks).items():
+    for name, labels in mapping.landmarks:
         if needed := [label for label in labels if label in gone]:
             raise InputError(
                 "--ignore", needed[0], f"is the landmark {name}, which is needed; ignore a span: {needed[0]}:FROM-TO"
             )
     kept = {
-        entry.name: tuple(label for label in getattr(mapping.segments, entry.name) if label not in gone)
-        for entry in entries(Segments)
+        name: tuple(label for label in getattr(mapping.segments, name) if label not in gone)
+        for name in Segments.model_fields
     }
-    return replace(mapping, segments=Segments(**kept))
+    return mapping.changed(segments=Segments(**kept))
 
 
 def _without(recording: Recording, ignored: tuple[Ignored, ...]) -> Recording:

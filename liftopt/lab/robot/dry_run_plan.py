@@ -15,7 +15,7 @@ import numpy.typing as npt
 from liftopt.lab.robot.simulated_arm import STEP
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.multibody.trajectory import agent_trajectory, cross
-from liftopt.scenario.build import object_of, robot_of
+from liftopt.scenario.build import agent_of, object_of
 from liftopt.solution.interpolation import linear, refined
 from liftopt.solution.solution import Solution
 
@@ -100,5 +100,7 @@ def _at_rest(dense: Solution, k: int) -> tuple[Array, Array, Array]:
     load = load + np.linalg.pinv(grasp_map) @ (weight - grasp_map @ load)
     own = load[-6:] if robot.grasp.moments else np.append(load[-3:], np.zeros(3))
     q, none = robot.q[[k]][:, robot.moving], np.zeros((1, int(robot.moving.sum())))
-    still = agent_trajectory(robot_of(dense.scenario, dense.urdfs), q, none, none, own[None, :3], own[None, 3:])
+    still = agent_trajectory(
+        agent_of(dense.scenario, robot.name, dense.urdfs), q, none, none, own[None, :3], own[None, 3:]
+    )
     return JOINT_SIGNS * still.tau[0, robot.moving], -own[:3], -own[3:]

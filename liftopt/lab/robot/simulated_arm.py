@@ -24,10 +24,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.mujoco_model import import_mujoco, spec_of
-from liftopt.multibody.robots.sawyer import GRASP, MOVING, NAME, VIRTUAL
+from liftopt.multibody.robots.sawyer import MOVING, NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name
+from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
-from liftopt.storage.result_folder import URDF_FILES
 
 Array = npt.NDArray[np.float64]
 STEP = 1e-3  # [s]: the arm's motor loop runs at 1 kHz (manufacturer's page "Arm Control Systems")
@@ -57,7 +57,8 @@ class SimulatedArm:
         """
         self._mujoco = import_mujoco()
         moving = [joint_name(NAME, row) for row in MOVING]
-        alone = replace(solution, urdfs={URDF_FILES[NAME]: solution.urdfs[URDF_FILES[NAME]]})
+        file = urdf_files(solution.scenario)[NAME]
+        alone = replace(solution, urdfs={file: solution.urdfs[file]})
         spec = spec_of(alone, [joint_name(NAME, row) for row in VIRTUAL])
         limits = solution.agents[1].limits
         for j, name in enumerate(moving):
@@ -71,7 +72,7 @@ class SimulatedArm:
         self._model = spec.compile()
         self._model.dof_damping[:], self._model.dof_frictionloss[:] = VISCOUS * friction, FRICTION * friction
         self._data = self._mujoco.MjData(self._model)
-        self._tip = self._model.body(GRASP).id
+        self._tip = self._model.body(f"{NAME}_grasp").id
         self._stiff = float(stiff)
         self.torque = np.zeros(7)
         self.reference = np.zeros(7)

@@ -22,6 +22,7 @@ from liftopt.multibody.person.human_shapes import human_shapes
 from liftopt.multibody.person.range_of_motion import RANGES
 from liftopt.multibody.person.strength import torque_limit
 from liftopt.multibody.person.subject import Sex, Subject
+from liftopt.multibody.placement import Placement
 from liftopt.multibody.shapes import Shape
 from liftopt.multibody.urdf import (
     HELD,
@@ -37,7 +38,7 @@ from liftopt.multibody.urdf import (
 
 __all__ = ["Subject", "human_agent", "human_chain", "human_limits", "human_root"]
 
-NAME, GRASP = "human", "human_grasp"
+NAME, ORIGIN = "human", Placement()
 VIRTUAL = ("GT1", "GT2", "GT3")
 # Orientation in the world of the hand that holds an edge from below: palm up (the grasp frame's z), fingers ahead (-x),
 # thumb to the right (y). Within reach at both ends of Table 5 for statures from 1.6 to 1.9 m.
@@ -46,15 +47,15 @@ HAND_UNDER_EDGE = np.diag([-1.0, -1.0, 1.0])
 POSTURE_DEG = {"Q5": 15.0, "Q7": -75.0, "Q8": -80.0}
 
 
-def human_root() -> Array:
+def human_root(place: Placement = ORIGIN) -> Array:
     """Return T_world_root (4, 4): the paper's frame at the feet, in the world."""
     root = np.eye(4)
     root[:3, :3] = ROTATION_WORLD_PAPER
-    return root
+    return root if place == ORIGIN else np.asarray(place.T_world_base @ root, dtype=np.float64)
 
 
-def human_chain(subject: Subject) -> DHChain:
-    """Return Table 2 for ``subject``, the inertia of each body in its row's DH frame.
+def human_chain(subject: Subject, name: str = NAME) -> DHChain:
+    """Return Table 2 for ``subject``, the inertia of each body in its row's DH frame; ``name`` begins its joints'.
 
     The bodies add up to the whole body mass: the pelvis and the legs are on GT3, so that the forces of the three
     virtual joints are the ground reaction.
@@ -62,7 +63,7 @@ def human_chain(subject: Subject) -> DHChain:
     lengths = link_lengths(subject)
     rows = human_rows(lengths.l1, lengths.l2, lengths.l3, lengths.l4, lengths.l5, lengths.l6)
     bodies = human_bodies(subject)
-    massless = DHChain(NAME, rows, tuple(BodyInertia.zero() for _ in rows))
+    massless = DHChain(name, rows, tuple(BodyInertia.zero() for _ in rows))
     frames = frame_transforms(massless, np.zeros(len(rows)))
     inertias = []
     for row, frame in zip(rows, frames, strict=True):
@@ -70,7 +71,7 @@ def human_chain(subject: Subject) -> DHChain:
         rotation = world_frame[:3, :3].T
         body = bodies.get(row.name, BodyInertia.zero())
         inertias.append(body.transformed(rotation, -rotation @ world_frame[:3, 3]).rounded())
-    return DHChain(NAME, rows, tuple(inertias))
+    return DHChain(name, rows, tuple(inertias))
 
 
 def human_limits(sex: Sex) -> JointLimits:
@@ -84,33 +85,37 @@ def human_limits(sex: Sex) -> JointLimits:
     )
 
 
-def human_agent(subject: Subject, urdf: str | None = None) -> Agent:
-    """Return the subject as an agent: feet at the world origin, facing +X, holding at ``human_grasp``.
+def human_agent(subject: Subject, urdf: str | None = None, *, name: str = NAME, place: Placement = ORIGIN) -> Agent:
+    """Return the subject as an agent that holds at ``<name>_grasp``; by default at the origin, facing +X.
 
-    The grasp point must stay in front of the base of the spine (eq. 14), which stands at X = 0.
+    The grasp point must stay in front of the base of the spine (eq. 14), which stands over the feet.
 
     Args:
         subject: who it is.
         urdf: the subject's URDF if it was written before; None writes it.
+        name: begins the names of its joints and links.
+        place: of the feet.
     """
-    limits, text = human_limits(subject.sex), urdf or human_urdf(subject)
+    limits, text = human_limits(subject.sex), urdf or human_urdf(subject, name, place)
+    ahead = place.ahead
     return Agent(
-        name=NAME,
+        name=name,
+        kind="person",
         urdf=text,
         model=load_model(text),
-        locked_joints=tuple(joint_name(NAME, row) for row in VIRTUAL),
-        grasp_frame=GRASP,
+        locked_joints=tuple(joint_name(name, row) for row in VIRTUAL),
+        grasp_frame=f"{name}_grasp",
         limits=limits,
         posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
-        workspace=HalfSpace(np.array([1.0, 0.0, 0.0]), 0.0),
+        workspace=HalfSpace(ahead, float(ahead @ (place.x, place.y, 0.0))),
     )
 
 
-def human_urdf(subject: Subject) -> str:
-    """Return the subject's URDF."""
-    chain, limits = human_chain(subject), human_limits(subject.sex)
+def human_urdf(subject: Subject, name: str = NAME, place: Placement = ORIGIN) -> str:
+    """Return the subject's URDF; arguments as ``human_agent``."""
+    chain, limits = human_chain(subject, name), human_limits(subject.sex)
     bounds = dict.fromkeys(VIRTUAL, HELD) | joint_bounds((item.joint for item in RANGES), limits)
-    return chain_urdf(chain, bounds, placed_shapes(chain, subject))
+    return chain_urdf(chain, bounds, placed_shapes(chain, subject), place)
 
 
 def joint_bounds(rows: Iterable[str], limits: JointLimits) -> dict[str, JointBounds]:
@@ -124,7 +129,12 @@ def placed_shapes(chain: DHChain, subject: Subject) -> dict[str, tuple[Shape, ..
     return shapes_on_links(link_placements(chain, human_root()), human_shapes(subject))
 
 
-def chain_urdf(chain: DHChain, bounds: dict[str, JointBounds], shapes: dict[str, tuple[Shape, ...]]) -> str:
-    """Return the URDF of a chain with the rows of Table 2, bounds and shapes by row."""
-    root = FixedLink("human_base", "world", human_root())
-    return urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=GRASP))
+def chain_urdf(
+    chain: DHChain,
+    bounds: dict[str, JointBounds],
+    shapes: dict[str, tuple[Shape, ...]],
+    place: Placement = ORIGIN,
+) -> str:
+    """Return the URDF of a chain with the rows of Table 2, bounds and shapes by row, standing at ``place``."""
+    root = FixedLink(f"{chain.name}_base", "world", human_root(place))
+    return urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes=shapes, grasp=f"{chain.name}_grasp"))

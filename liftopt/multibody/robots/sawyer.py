@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
 
 from liftopt.multibody.agent import Agent, JointLimits
@@ -15,10 +13,10 @@ from liftopt.multibody.dh import (
     DHChain,
     frame_transforms,
     robot_rows,
-    rotation_z,
     row_tail,
     translation,
 )
+from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots import sawyer_description as described
 from liftopt.multibody.robots.sawyer_shapes import TOOL_RADIUS, link_shapes, stand_shapes, tool_shapes
 from liftopt.multibody.shapes import Shape
@@ -35,7 +33,7 @@ from liftopt.multibody.urdf import (
     urdf_text,
 )
 
-NAME, GRASP = "robot", "robot_grasp"
+NAME = "robot"
 VIRTUAL, MOVING = ("GT1", "GT2", "GT3"), ("Q1", "Q2", "Q3", "Q4", "Q5", "Q6", "Q7")
 # l1 to l8 of Table 3 [m], to the flange: they reproduce the manufacturer's joint origins.
 LENGTHS = (0.317, 0.081, 0.1925, 0.4, 0.1685, 0.4, 0.1363, 0.1345)
@@ -47,11 +45,11 @@ LEVEL_TOOL = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 POSTURE = (-0.15, -0.44, 0.0, -1.12, 0.0, -0.68, 0.0)
 
 
-def sawyer_root(standing_distance: float) -> Array:
-    """Return T_world_root (4, 4): the paper's frame on the floor below the robot, which faces the human (-X)."""
-    turned: Array = np.eye(4)
-    turned[:3, :3] = rotation_z(pi)[:3, :3] @ ROTATION_WORLD_PAPER
-    return translation(standing_distance, 0.0, 0.0) @ turned
+def sawyer_root(place: Placement) -> Array:
+    """Return T_world_root (4, 4): the paper's frame on the floor below the robot, which faces along ``place``."""
+    root: Array = np.eye(4)
+    root[:3, :3] = ROTATION_WORLD_PAPER
+    return np.asarray(place.T_world_base @ root, dtype=np.float64)
 
 
 def sawyer_chain(*, base_height: float, tool_length: float, tool_mass: float) -> DHChain:
@@ -65,8 +63,8 @@ def sawyer_chain(*, base_height: float, tool_length: float, tool_mass: float) ->
     Raises:
         InputError: a value is out of range.
     """
-    _check(base_height, tool_length, tool_mass)
-    bare = _bare_chain(base_height, tool_length)
+    _check(NAME, base_height, tool_length, tool_mass)
+    bare = _bare_chain(NAME, base_height, tool_length)
     flange_from_tip = np.array([0.0, 0.0, -tool_length])
     last = bare.inertias[-1] + _tool_body(tool_length, tool_mass).transformed(np.eye(3), flange_from_tip)
     return DHChain(NAME, bare.rows, (*bare.inertias[:-1], last.rounded()))
@@ -87,40 +85,47 @@ def sawyer_limits() -> JointLimits:
 
 
 def sawyer_agent(
-    *, standing_distance: float, base_height: float, tool_length: float, tool_mass: float, urdf: str | None = None
+    *,
+    place: Placement,
+    base_height: float,
+    tool_length: float,
+    tool_mass: float,
+    urdf: str | None = None,
+    name: str = NAME,
 ) -> Agent:
-    """Return Sawyer as an agent: on its pedestal at X = ``standing_distance``, facing the human (-X).
+    """Return Sawyer as an agent on its pedestal.
 
-    It holds at ``robot_grasp``, the tool's tip; with a tool of length and mass zero, the bare flange.
+    It holds at ``<name>_grasp``, the tool's tip; with a tool of length and mass zero, the bare flange.
 
     Args:
-        standing_distance: from the human's feet to the robot's base axis, along X [m].
+        place: of its base axis on the floor, and which way it faces.
         base_height: of the arm's base above the floor, l9 [m].
         tool_length: from the flange to the grasp point [m].
         tool_mass: of the gripper [kg].
         urdf: this robot's URDF if it was written before; None writes it.
+        name: begins the names of its joints and links.
 
     Raises:
-        InputError: a value is out of range; its key is ``task.standing_distance``, ``robot.base_height``,
-            ``robot.tool.length`` or ``robot.tool.mass``.
+        InputError: a value is out of range; its key is ``<name>.base_height``, ``<name>.tool.length`` or
+            ``<name>.tool.mass``.
     """
-    checked_number("task.standing_distance", standing_distance, 0.5, 4.0, "m")
-    _check(base_height, tool_length, tool_mass)
-    text = urdf or _urdf(standing_distance, base_height, tool_length, tool_mass)
+    _check(name, base_height, tool_length, tool_mass)
+    text = urdf or _urdf(name, place, base_height, tool_length, tool_mass)
     return Agent(
-        name=NAME,
+        name=name,
+        kind="robot",
         urdf=text,
         model=load_model(text),
-        locked_joints=tuple(joint_name(NAME, row) for row in VIRTUAL),
-        grasp_frame=GRASP,
+        locked_joints=tuple(joint_name(name, row) for row in VIRTUAL),
+        grasp_frame=f"{name}_grasp",
         limits=sawyer_limits(),
         posture=np.array(POSTURE),
     )
 
 
-def _urdf(standing_distance: float, base_height: float, tool_length: float, tool_mass: float) -> str:
-    chain, limits = _bare_chain(base_height, tool_length), sawyer_limits()
-    root = sawyer_root(standing_distance)
+def _urdf(name: str, place: Placement, base_height: float, tool_length: float, tool_mass: float) -> str:
+    chain, limits = _bare_chain(name, base_height, tool_length), sawyer_limits()
+    root = sawyer_root(place)
     moves = zip(limits.q_lower, limits.q_upper, limits.tau_upper, limits.velocity, strict=True)
     bounds = dict.fromkeys(VIRTUAL, HELD) | {
         row: JointBounds(*map(float, values)) for row, values in zip(MOVING, moves, strict=True)
@@ -131,23 +136,23 @@ def _urdf(standing_distance: float, base_height: float, tool_length: float, tool
             root=_stand(chain, root, base_height),
             bounds=bounds,
             shapes=shapes_on_links(link_placements(chain, root), _shapes(chain, root)),
-            grasp=GRASP,
+            grasp=f"{name}_grasp",
             attached=_tool(chain, tool_length, tool_mass),
         )
     )
 
 
-def _bare_chain(base_height: float, tool_length: float) -> DHChain:
+def _bare_chain(name: str, base_height: float, tool_length: float) -> DHChain:
     """Return Table 3 to the tool's tip, without the tool's body: the manufacturer's bodies moved into DH frames."""
     rows = robot_rows((*LENGTHS[:7], LENGTHS[7] + tool_length, base_height))
-    massless = DHChain(NAME, rows, tuple(BodyInertia.zero() for _ in rows))
+    massless = DHChain(name, rows, tuple(BodyInertia.zero() for _ in rows))
     dh_frames = frame_transforms(massless, np.zeros(len(rows)))[len(VIRTUAL) :]
     described_frames = described.described_frames(np.zeros(len(MOVING)))
     inertias = [BodyInertia.zero() for _ in VIRTUAL]
     for body, dh_frame, frame in zip(_described_bodies(), dh_frames, described_frames, strict=True):
         relative = np.linalg.inv(dh_frame) @ _root_base(massless) @ frame
         inertias.append(body.transformed(relative[:3, :3], relative[:3, 3]).rounded())
-    return DHChain(NAME, rows, tuple(inertias))
+    return DHChain(name, rows, tuple(inertias))
 
 
 def _described_bodies() -> list[BodyInertia]:
@@ -166,7 +171,7 @@ def _stand(chain: DHChain, root: Array, base_height: float) -> FixedLink:
     base = _root_base(chain)
     body = (described.BASE_LINK.body() + described.PEDESTAL.body()).transformed(base[:3, :3], base[:3, 3]).rounded()
     shapes = tuple(shape.seen_from(base) for shape in stand_shapes(base_height))
-    return FixedLink("robot_base", "world", root, body, shapes)
+    return FixedLink(f"{chain.name}_base", "world", root, body, shapes)
 
 
 def _shapes(chain: DHChain, root: Array) -> dict[str, tuple[Shape, ...]]:
@@ -185,7 +190,7 @@ def _tool(chain: DHChain, length: float, mass: float) -> tuple[FixedLink, ...]:
         return ()
     flange = row_tail(chain.rows[-1]) @ translation(0.0, 0.0, -length)
     body = _tool_body(length, mass)
-    return (FixedLink("robot_tool", link_name(NAME, MOVING[-1]), flange, body, tool_shapes(length)),)
+    return (FixedLink(f"{chain.name}_tool", link_name(chain.name, MOVING[-1]), flange, body, tool_shapes(length)),)
 
 
 def _tool_body(length: float, mass: float) -> BodyInertia:
@@ -195,7 +200,7 @@ def _tool_body(length: float, mass: float) -> BodyInertia:
     return BodyInertia(float(mass), np.array([0.0, 0.0, length / 2.0]), inertia)
 
 
-def _check(base_height: float, tool_length: float, tool_mass: float) -> None:
-    checked_number("robot.base_height", base_height, 0.1, 2.0, "m")
-    checked_number("robot.tool.length", tool_length, 0.0, 1.0, "m")
-    checked_number("robot.tool.mass", tool_mass, 0.0, 20.0, "kg")
+def _check(name: str, base_height: float, tool_length: float, tool_mass: float) -> None:
+    checked_number(f"{name}.base_height", base_height, 0.1, 2.0, "m")
+    checked_number(f"{name}.tool.length", tool_length, 0.0, 1.0, "m")
+    checked_number(f"{name}.tool.mass", tool_mass, 0.0, 20.0, "kg")

@@ -222,10 +222,10 @@ def test_a_rival_stops_what_is_worse_and_changes_nothing_else(seed: int) -> None
     for convex in (True, False):
         problem = random_problem(seed, convex)
         alone = problem.solve()
-        beaten = problem.solve(incumbent=alone["objective"] - 100.0)
+        beaten = problem.solve(rival=alone["objective"] - 100.0)
         assert beaten["status"] == "Worse_Than_Rival" and beaten["iterations"] < alone["iterations"]
         if convex:
-            ahead = problem.solve(incumbent=alone["objective"] + 1e-6)
+            ahead = problem.solve(rival=alone["objective"] + 1e-6)
             assert ahead["status"] == "Solve_Succeeded"
             np.testing.assert_array_equal(ahead["x"], alone["x"])
 

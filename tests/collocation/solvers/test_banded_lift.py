@@ -21,7 +21,7 @@ from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.file import shipped_scenarios
-from liftopt.scenario.model import Scenario, load_scenario, with_overrides
+from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.initial_guess import InitialGuess, PostureSolver, blend, naive_guess, seed_coordinates
 from liftopt.search.solve import lift
 
@@ -279,16 +279,16 @@ def test_varied_scenarios_at_the_first_try() -> None:
     """Statures, masses, heights, distances and durations: 19 of 20 at the first try, each KKT error by Pinocchio."""
     rng, base, banded, failed = np.random.default_rng(11), load_scenario("table5"), None, []
     ranges = {
-        "human.stature": (1.55, 1.92), "human.mass": (52.0, 98.0), "table.mass": (1.0, 4.0), "duration": (1.4, 3.0),
+        "human.stature": (1.55, 1.92), "human.mass": (52.0, 98.0), "object.mass": (1.0, 4.0), "duration": (1.4, 3.0),
         "task.start.height": (0.75, 1.0), "task.end.height": (1.2, 1.5), "task.standing_distance": (1.75, 2.05),
     }  # fmt: skip
     for _ in range(20):
-        overrides = [f"{key}={rng.uniform(*bounds):.3f}" for key, bounds in ranges.items()]
-        problem = problem_of(with_overrides(base, overrides))
+        changes = {key: round(rng.uniform(*bounds), 3) for key, bounds in ranges.items()}
+        problem = problem_of(base.replace(changes))
         banded = banded or Banded(problem)
         result = banded.solve(posture_pair(problem), deadline=np.inf, problem=problem)
         if not result.converged or kkt_error(problem, result.x, result.multipliers).error > TOLERANCE:
-            failed.append((overrides, result.status))
+            failed.append((changes, result.status))
     assert len(failed) <= 1, failed
 
 
@@ -301,7 +301,7 @@ def test_ipopt_takes_over_where_it_fails(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(Banded, "solve", fail)
     lines: list[str] = []
-    scenario = with_overrides(load_scenario("table5"), ["solver.name=banded", "solver.starts=2", "solver.intervals=16"])
+    scenario = load_scenario("table5").replace({"solver.name": "banded", "solver.starts": 2, "solver.intervals": 16})
     solution = lift(scenario, progress=lines.append)
     assert solution.verification.passed and any("IPOPT takes over" in line for line in lines)
     assert {start.status for start in solution.starts[:2]} == {"converged (IPOPT, after banded: Line_Search_Failed)"}

@@ -151,7 +151,7 @@ def test_wrong_cuts_are_refused(marked: Recording, start: str, end: str, match: 
 
 
 def test_two_knuckles_and_the_wrist_make_a_hand(truth: Any, clean: RecordedLift) -> None:
-    mapping = replace(truth.mapping, segments=replace(truth.mapping.segments, hand=()))
+    mapping = truth.mapping.changed(segments=truth.mapping.segments.changed(hand=()))
     lift = recorded_lift(truth.recording, mapping, LOAD)
     np.testing.assert_allclose(lift.q[:, 3:], clean.q[:, 3:], atol=2e-3)
     np.testing.assert_allclose(lift.lengths.l6, truth.lengths.l6, atol=1e-4)

@@ -1,0 +1,71 @@
+"""What the entries of a scenario must agree on."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.scenario.agents import NAME, NAMES
+from liftopt.scenario.placement import grasp_points, stand_of
+from liftopt.scenario.urdf_files import urdf_files
+
+if TYPE_CHECKING:
+    from liftopt.scenario.model import Scenario
+
+# What results call otherwise: attributes objective_<agent>, and the sections beside the agents.
+TAKEN = ("acceleration", "force", "limit", "error", "bar", "schema", "table")
+
+
+def check(scenario: Scenario) -> None:
+    """Raise ``InputError`` where two entries of a scenario contradict each other, or one is missing for another."""
+    if not scenario.agents:
+        raise InputError("agents", NO_VALUE, "is empty; must hold a table [agents.NAME] for everybody who lifts")
+    _check_names(scenario)
+    _check_weights(scenario)
+    for name in scenario.agents:
+        stand_of(scenario, name)
+    grasp_points(scenario)
+    for end in ("start", "end"):
+        _check_place(scenario, end)
+
+
+def _check_names(scenario: Scenario) -> None:
+    taken = {*TAKEN, *type(scenario).model_fields, scenario.object.name}
+    for name in scenario.agents:
+        if not NAME.fullmatch(name):
+            raise InputError("agents", name[:60], f"the name of an agent must be {NAMES}")
+        if name in taken:
+            raise InputError("agents", name, "is the name of something else; give the agent another one")
+    files = Counter(urdf_files(scenario).values())
+    for name, file in urdf_files(scenario).items():
+        if files[file] > 1 and name == file.removesuffix(".urdf"):
+            raise InputError("agents", name, f"has the file {file}, as another agent; give it another name")
+
+
+def _check_weights(scenario: Scenario) -> None:
+    weights = {f"{name}.weight": agent.weight for name, agent in scenario.agents.items()}
+    objective = scenario.objective
+    weights |= {
+        "acceleration_weight": objective.acceleration_weight,
+        "force_weight": objective.force_weight,
+    }
+    if not any(weights.values()):
+        raise InputError("objective", weights, "at least one weight must be above 0")
+
+
+def _check_place(scenario: Scenario, end: str) -> None:
+    task, most = scenario.task, scenario.limits.table_pitch_deg
+    place = getattr(task, end)
+    if abs(place.pitch_deg) > most:
+        allowed = f"must be from {-most:g} to {most:g} deg, or raise limits.table_pitch_deg"
+        raise InputError(f"task.{end}.pitch_deg", place.pitch_deg, allowed)
+    distance: float | None = place.human_distance
+    room = task.standing_distance - scenario.object.depth
+    if (distance or 0.0) >= room:
+        where = f"standing_distance {task.standing_distance:g} m, object.depth {scenario.object.depth:g} m"
+        raise InputError(
+            f"task.{end}.human_distance",
+            "free" if distance is None else distance,
+            f"must be below {room:g} m, or the object reaches behind the robot's base ({where})",
+        )

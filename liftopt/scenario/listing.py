@@ -1,0 +1,41 @@
+"""Every key that a scenario has, with what it holds: for help, reports and offers in messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from liftopt.files.section import about, allowed, section_of
+from liftopt.scenario.agents import KINDS
+from liftopt.scenario.keys import AGENTS
+
+DEFAULT_TEAM = {"human": "person", "robot": "robot"}  # of the shipped scenarios
+
+
+def fields_of(of: type[BaseModel], agents: Mapping[str, str], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
+    """Yield the dotted key and the field of every section and entry of a scenario or of a section of it.
+
+    Args:
+        of: the model.
+        agents: kind by name; their entries stand under their names.
+        prefix: of the keys, with its dot.
+    """
+    for name, field in of.model_fields.items():
+        key = prefix + name
+        if key == AGENTS:
+            for agent, kind in agents.items():
+                yield from fields_of(KINDS[kind], agents, f"{agent}.")
+            continue
+        yield key, field
+        if (inside := section_of(field)) is not None:
+            yield from fields_of(inside, agents, f"{key}.")
+
+
+def describe(of: type[BaseModel], agents: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Yield the dotted key of every entry and what it holds: meaning, range and default; arguments as ``fields_of``."""
+    for key, field in fields_of(of, agents):
+        if section_of(field) is None:
+            has_default = not field.is_required() and field.default is not None
+            yield key, f"{about(field)}: {allowed(field)}" + (f"; default {field.default}" if has_default else "")

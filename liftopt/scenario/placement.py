@@ -1,0 +1,79 @@
+"""Where everybody stands, and where on the object everybody holds it: as given, or the two opposite each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.multibody.edges import Point, edge_grasps
+from liftopt.scenario.agents import Person
+
+if TYPE_CHECKING:
+    from liftopt.scenario.model import Scenario
+
+
+class Stand(NamedTuple):
+    """Where an agent stands [m] and which way it faces, from X about Z [deg]."""
+
+    x: float
+    y: float
+    yaw_deg: float
+
+
+def lead(scenario: Scenario) -> str:
+    """Return the name of the first person, from whose feet distances count; of the first agent if there is none."""
+    agents = scenario.agents
+    return next((name for name, agent in agents.items() if isinstance(agent, Person)), next(iter(agents)))
+
+
+def partner(scenario: Scenario) -> str | None:
+    """Return the name of who stands opposite the lead: the first robot, or the second agent; None if there is none."""
+    others = [name for name in scenario.agents if name != lead(scenario)]
+    robots = [name for name in others if scenario.agents[name].kind == "robot"]
+    return next(iter([*robots, *others]), None)
+
+
+def stand_of(scenario: Scenario, name: str) -> Stand:
+    """Return where an agent stands.
+
+    Raises:
+        InputError: the scenario does not say it, and the agent is none of the two that stand opposite each other.
+    """
+    agent, ahead = scenario.agents[name], scenario.task.standing_distance
+    if isinstance(agent, Person):
+        first = name == lead(scenario)
+        feet = agent.position or _default(scenario, name, {lead(scenario): (0.0, 0.0)}, (ahead, 0.0), "position")
+        heading = agent.heading_deg if agent.heading_deg is not None else 0.0 if first else 180.0
+        return Stand(*feet, heading)
+    base = agent.base
+    x = base.x if base.x is not None else _default(scenario, name, {}, (ahead, 0.0), "base.x")[0]
+    return Stand(x, base.y, base.yaw_deg)
+
+
+def grasp_points(scenario: Scenario) -> dict[str, Point]:
+    """Return where each agent holds the object, in the object's axes from its centre [m], in the agents' order.
+
+    Raises:
+        InputError: the scenario does not say it, and the agent is none of the two that stand opposite each other.
+    """
+    box = scenario.object
+    edges = edge_grasps(box.depth, box.height, lead(scenario), partner(scenario) or "")
+    points: dict[str, Point] = {}
+    for name in scenario.agents:
+        point = box.grasps.get(name, edges.get(name))
+        if point is None:
+            raise InputError(
+                f"object.grasps.{name}", NO_VALUE, "is missing; must be [x, y, z] from the object's centre in its axes"
+            )
+        points[name] = point
+    return points
+
+
+def _default(
+    scenario: Scenario, name: str, known: dict[str, tuple[float, float]], opposite: tuple[float, float], key: str
+) -> tuple[float, float]:
+    """Return where one stands who does not say it."""
+    places = {partner(scenario): opposite} | known
+    if name not in places:
+        raise InputError(f"{name}.{key}", NO_VALUE, "is missing; only the two who face each other have a default place")
+    return places[name]

@@ -1,0 +1,49 @@
+"""What a scenario weighs, limits and asks of the solver; all of it has defaults."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from liftopt.files.entries import entry, number, whole
+from liftopt.files.section import Section
+
+
+class Objective(Section):
+    """What is minimised: the preset names the terms, each weighted; an agent's weight stands with the agent."""
+
+    preset: Annotated[Literal["paper"], entry("which terms: the paper's eq. 10")] = "paper"
+    acceleration_weight: Annotated[float, number("weight of the accelerations squared", "", 0.0, 1e6)] = 0.5
+    force_weight: Annotated[float, number("weight of the grasp forces squared", "", 0.0, 1e6)] = 0.01
+
+
+class Limits(Section):
+    """Limits that belong to the task rather than to an agent."""
+
+    table_roll_deg: Annotated[float, number("largest roll of the object in a wrench grasp", "deg", 0.0, 60.0)] = 10.0
+    table_pitch_deg: Annotated[float, number("largest pitch of the object", "deg", 0.0, 60.0)] = 10.0
+    table_yaw_deg: Annotated[float, number("largest yaw of the object", "deg", 0.0, 60.0)] = 10.0
+    max_grasp_force: Annotated[float, number("largest grasp force", "N", 0.0, 10_000.0, open_low=True)] = 200.0
+    balance_tolerance: Annotated[float, number("slack in the object's balance", "N, Nm", 0.0, 100.0)] = 0.0
+
+
+class Solver(Section):
+    """How the problem is solved."""
+
+    name: Annotated[Literal["banded", "ipopt"], entry("interior point that solves it")] = "banded"
+    intervals: Annotated[int, whole("spline intervals N", 6, 400)] = 20
+    starts: Annotated[int, whole("starts of which the best is kept", 1, 64)] = 4
+    tries: Annotated[int, whole("starts tried first on a coarser mesh, 0: none", 0, 512)] = 48
+    tolerance: Annotated[float, number("KKT error at which a start has converged", "", 1e-10, 1e-3)] = 1e-6
+    workers: Annotated[int, whole("starts and postures at a time; IPOPT takes one", 1, 64)] = 2
+    seed: Annotated[int, whole("seed of the random starts", 0, 2**32 - 1)] = 0
+    time_limit: Annotated[float, number("wall time of the whole solve", "s", 0.1, 3600.0)] = 50.0
+
+
+class Refine(Section):
+    """Whether N is doubled, up to 400 and as long as time is left, until all of these hold."""
+
+    on: Annotated[bool, entry("refine the mesh")] = False
+    objective_error: Annotated[float, number("estimated error of the objective, share of it", "", 1e-4, 1.0)] = 0.02
+    closure: Annotated[float, number("distance of the grasps between knots", "m", 1e-7, 1e-3)] = 1e-4
+    balance: Annotated[float, number("residual of the object's balance between knots", "N, Nm", 1e-4, 100.0)] = 0.1
+    torque_excess: Annotated[float, number("torque above its limit between knots", "Nm", 1e-4, 100.0)] = 0.1
