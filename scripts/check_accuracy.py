@@ -16,10 +16,12 @@ import numpy as np
 from benchmarks.case import Case
 from benchmarks.scenarios import PATIENT, Varied, varied_scenarios
 
-from liftopt.scenario.build import motions_of
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.search.cache import SolverCache
-from liftopt.search.mesh_refinement import QUICKEST, distance, neighbour
-from liftopt.search.solve import Search
+from liftopt.search.mesh_accuracy import distance
+from liftopt.search.optimum_on_mesh import FASTEST_FIRST, optimum_on_mesh
+from liftopt.search.session import Session
+from liftopt.search.solve import find_lift
 
 FINE = (40, 80, 160, 320)
 RESTS = ("velocity", "acceleration")
@@ -28,24 +30,24 @@ RESTS = ("velocity", "acceleration")
 def accuracy(varied: Varied, cache: SolverCache) -> dict[str, float]:
     """Return a scenario's objective and limit over the objective on the finest mesh, less 1, and how far it moved."""
     scenario = varied.scenario(PATIENT)
-    search = Search(scenario, cache, motions_of(scenario), lambda line: None)
-    plan = fine = search.sharpened(search.best())
-    known = search.accuracy
-    if not plan.solved or known is None:
+    found = find_lift(Session(scenario, cache))
+    best, known = found.best, found.accuracy
+    fine = best
+    if not best.solved or known is None:
         raise RuntimeError(f"not solved: {varied.overrides}")
     for intervals in FINE:
-        if intervals > plan.spline.intervals:
-            there = neighbour(cache, fine, intervals, QUICKEST, np.inf, lambda line: None)
+        if intervals > best.spline.intervals:
+            there = optimum_on_mesh(cache, fine, intervals, FASTEST_FIRST, NEVER, lambda line: None)
             if there is None:
                 raise RuntimeError(f"no optimum on {intervals} intervals: {varied.overrides}")
             fine = there
     finest = fine.result.objective
     return {
-        "intervals": plan.spline.intervals,
-        "objective": plan.result.objective / finest - 1,
+        "intervals": best.spline.intervals,
+        "objective": best.result.objective / finest - 1,
         "limit": known.objective_limit / finest - 1,
         "bar": known.objective_bar / finest,
-        "moved": distance(plan, fine),
+        "moved": distance(best, fine),
     }
 
 

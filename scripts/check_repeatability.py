@@ -113,11 +113,11 @@ def choose_vectors(kind: str) -> bool:
 def answer(overrides: Sequence[str], cache: Any) -> dict[str, Any]:
     """Solve one scenario and return what is compared."""
     from liftopt.scenario.model import load_scenario
-    from liftopt.search.solve import lift
+    from liftopt.search.solve import solve
     from liftopt.solution.solution import CUT_SHORT
 
     began, used = time.monotonic(), time.process_time()
-    solution = lift(load_scenario("table5", list(overrides)), cache=cache)
+    solution = solve(load_scenario("table5", list(overrides)), cache=cache)
     digest = hashlib.sha256()
     for agent in solution.agents:
         for numbers in (agent.q, agent.v, agent.a, agent.tau, agent.grasp_force, agent.grasp_moment):

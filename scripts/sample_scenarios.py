@@ -20,7 +20,7 @@ from scipy.stats import qmc
 from liftopt.errors import InputError, LiftoptError
 from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 
 RANGES = {
     "human.stature": (1.45, 2.05),
@@ -61,12 +61,12 @@ def answer(overrides: list[str], cache: SolverCache) -> dict[str, Any]:
     began, cpu = time.monotonic(), time.process_time()
     entry: dict[str, Any] = {"overrides": overrides}
     try:
-        solution = lift(load_scenario("table5", overrides), cache=cache)
+        solution = solve(load_scenario("table5", overrides), cache=cache)
         entry |= {"outcome": "solved" if solution.solved else solution.status.partition(":")[0].partition(" (")[0]}
         entry |= {"status": solution.status, "objective": solution.objective}
         entry |= {"starts": [(s.name, s.status, s.objective, s.iterations) for s in solution.starts]}
         entry |= {"notes": solution.notes, "kept": solution.kept_start, "intervals": solution.intervals}
-        for name in ("reasons", "remedies"):
+        for name in ("reasons", "suggested_changes"):
             entry[name] = [item.message for item in getattr(solution, name)]
     except InputError as error:
         entry |= {"outcome": "refused", "status": str(error)}
@@ -86,7 +86,7 @@ def table(entries: list[dict[str, Any]]) -> str:
         lines.append(f"| {outcome} | {count} | {np.median(seconds):.2f} | {np.max(seconds):.2f} |")
     told = [entry for entry in entries if entry["outcome"] not in ("solved", "refused")]
     reasons = sum(bool(entry.get("reasons")) for entry in told)
-    suggested_changes = sum(bool(entry.get("remedies")) for entry in told)
+    suggested_changes = sum(bool(entry.get("suggested_changes")) for entry in told)
     lines.append(f"\n{len(entries)} scenarios; of {len(told)} without a solution {reasons} have named reasons, ")
     lines[-1] += f"{suggested_changes} a change that was solved with."
     return "\n".join(lines)

@@ -46,17 +46,20 @@ def scenario_tables() -> Any:
 @pytest.fixture(scope="session")
 def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
     """Return a function that solves a shipped scenario with overrides, each once a session."""
-    from liftopt.search.solve import lift
+    from liftopt.search.solve import solve
+    from liftopt.storage.writer import save
 
     @cache
-    def solve(name: str, *overrides: str) -> Solved:
+    def solve_once(name: str, *overrides: str) -> Solved:
         folder = tmp_path_factory.mktemp("result")
-        return Solved(lift(load_scenario(name, overrides), out=folder), folder)
+        solution = solve(load_scenario(name, overrides))
+        save(solution, folder)
+        return Solved(solution, folder)
 
-    return solve
+    return solve_once
 
 
-def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:
+def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:
     knots, n = 5, joints + 3
     names = tuple(f"{name}_GT{i}" for i in (1, 2, 3)) + tuple(f"{name}_Q{i}" for i in range(1, joints + 1))
     tau = np.zeros((knots, n))
@@ -67,6 +70,7 @@ def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float,
     q[:, 4] = np.radians([0.0, 10.0, 20.0, 30.0, 45.0])
     return SimpleNamespace(
         name=name,
+        kind=kind,
         joint_names=names,
         moving=np.array([False] * 3 + [True] * joints),
         q=q,
@@ -76,6 +80,8 @@ def _agent(name: str, joints: int, force: np.ndarray, grasp: tuple[float, float,
         grasp_moment=np.zeros_like(force),
         grasp=Grasp(),
         grasp_position=np.tile(grasp, (knots, 1)),
+        ground_force=np.zeros((knots, 3)),
+        ground_moment=np.zeros((knots, 3)),
     )
 
 
@@ -90,18 +96,18 @@ def solution() -> SimpleNamespace:
     ground[3, 2] *= 1.1
     moment = np.zeros((5, 3))
     moment[1] = [3.0, -4.0, 0.0]
+    human = _agent("human", "person", 10, human_force, (0.4, 0.0, 0.9))
+    human.ground_force, human.ground_moment = ground, moment
+    robot = _agent("robot", "robot", 7, robot_force, (0.85, 0.0, 0.9))
     check = SimpleNamespace(name="closure", value=2e-9, limit=1e-6, unit="m", where="human at t = 0.40 s", passed=True)
     return SimpleNamespace(
         scenario=scenario,
         status="solved",
         solved=True,
         time=np.linspace(0.0, 2.0, 5),
-        agents=(
-            _agent("human", 10, human_force, (0.4, 0.0, 0.9)),
-            _agent("robot", 7, robot_force, (0.85, 0.0, 0.9)),
-        ),
-        ground_reaction_force=ground,
-        ground_reaction_moment=moment,
+        agents=(human, robot),
+        persons=(human,),
+        robots=(robot,),
         objective=350.0,
         objective_terms={"human": 200.0, "robot": 100.0, "acceleration": 90.0, "force": 500.0},
         objective_weights={"human": 1.0, "robot": 1.0, "acceleration": 0.5, "force": 0.01},

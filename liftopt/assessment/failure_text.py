@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from liftopt.assessment.mathematics import setting
-from liftopt.solution.infeasibility_report import Obstacle
+from liftopt.solution.infeasibility_report import InfeasibilityReason
 from liftopt.solution.solution import Solution
 
 MOST_LINES = 12
@@ -31,6 +31,6 @@ def failure_text(solution: Solution, out: Path, folder: Path) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _reasons(status: str, reasons: Sequence[Obstacle]) -> list[str]:
+def _reasons(status: str, reasons: Sequence[InfeasibilityReason]) -> list[str]:
     others = [reason.message for reason in reasons if reason.message not in status]
     return [f"  in the way: {' '.join(message.split())}" for message in others[:MOST_REASONS]]

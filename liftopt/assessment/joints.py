@@ -136,7 +136,7 @@ def _along(part: float) -> str:
 def _joint(fine: Solution, agent: AgentTrajectory, name: str, sign: int, words: Words) -> str:
     """Return a joint in its user's words: the motion in a direction (0: none), and its name in the paper's tables."""
     short = _short(agent, name)
-    motion = words.motions.get((short, sign)) or joint_meaning(agent.name, fine.scenario.first("robot").model, short)
+    motion = words.motions.get((short, sign)) or joint_meaning(agent.kind, fine.scenario.first("robot").model, short)
     return f"{motion.removesuffix(' (-)').lstrip('-')} ({short})" if motion else short
 
 

@@ -18,8 +18,7 @@ constexpr double kPredicted = 0.5;
 constexpr int kMostHalvings = 24, kMostCorrections = 2, kMostShifts = 6;
 constexpr double kFirstShift = 1e-2, kShiftGrowth = 10.0;
 // What is expected of a solve that has a rival: that the objective falls once more by what it fell in so many
-// iterations, and that this share of the unknowns is at a bound. On 61 varied lifts a window of 5 with shares of 0.18
-// to 0.36 lost no best optimum, windows of 4 and 3 one; from other starts of 60 of them 0.2 lost one, by 0.16 %.
+// iterations, and that this share of the unknowns is at a bound. A shorter window loses optima (docs/tuning.md).
 constexpr std::size_t kWindow = 5;
 constexpr double kAtBounds = 0.2;
 

@@ -1,7 +1,7 @@
 """The constraints by name: rows ``g = G C + A x``, their bounds, and what each row means.
 
 Numbers in brackets are the paper's constraints. Those of time-independent rows that the spline satisfies by
-construction (3: pinned bases, 9: rest at both ends) or that are bounds on unknowns (1: joint limits, 5: range of
+construction (3: locked bases, 9: rest at both ends) or that are bounds on unknowns (1: joint limits, 5: range of
 motion of the object, 8: poses at the ends) need no row.
 """
 
@@ -28,7 +28,7 @@ class Block:
     """Rows of one constraint of one agent or the object.
 
     Attributes:
-        name: ``"closure"`` (6), ``"torque"`` (2), ``"keep_in"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
+        name: ``"closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
             ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``.
         who: agent or object.
         rows: where in g.
@@ -101,13 +101,13 @@ class Constraints:
 
 
 def build_constraints(
-    agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask, layout: Layout, outputs: tuple[int, ...]
+    agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask, layout: Layout, outputs: tuple[int, ...]
 ) -> Constraints:
     """Build the rows for agents that hold one object.
 
     Args:
         agents: in the order of the object's grasp frames.
-        held: the object.
+        lifted: the object.
         task: limits and tolerances.
         layout: of the unknowns.
         outputs: number of kernel outputs a knot, of each agent and then of the object.
@@ -122,8 +122,8 @@ def build_constraints(
             _moment(rows, i, agent)
         _flat_hand(rows, i, agent)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
-    _balance(rows, len(agents), held, served_rows(agents, held, task.balance_tolerance), task.balance_tolerance)
-    _velocity(rows, len(agents), held.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
+    _balance(rows, len(agents), lifted, served_rows(agents, lifted, task.balance_tolerance), task.balance_tolerance)
+    _velocity(rows, len(agents), lifted.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
     n_c = len(layout.mesh.phase) * sum(outputs)
     return Constraints(
         tuple(rows.blocks),
@@ -157,7 +157,7 @@ def _workspace(rows: _Rows, i: int, agent: Agent) -> None:
     for axis in np.flatnonzero(agent.workspace.normal):
         rows.add(rows.outputs_at(i, rows.knots, np.array([n + axis])), float(agent.workspace.normal[axis]))
     offset, above = np.array([agent.workspace.offset]), np.array([np.inf])
-    rows.close("keep_in", agent.name, ("distance",), offset, above, len(rows.knots))
+    rows.close("workspace", agent.name, ("distance",), offset, above, len(rows.knots))
 
 
 def _grasp_force(rows: _Rows, i: int, who: str, cap: float) -> None:
@@ -190,17 +190,17 @@ def _flat_hand(rows: _Rows, i: int, agent: Agent) -> None:
         rows.close(flat.name, agent.name, flat.labels, np.zeros(m), np.full(m, np.inf), len(rows.knots))
 
 
-def served_rows(agents: tuple[Agent, ...], held: LiftedObject, tolerance: float) -> list[int]:
+def served_rows(agents: tuple[Agent, ...], lifted: LiftedObject, tolerance: float) -> list[int]:
     """Return the rows of the balance to ask for: all six with a tolerance, as in the paper, else those served."""
-    unserved = None if any(agent.grasp.moments for agent in agents) else held.unserved_row()
+    unserved = None if any(agent.grasp.moments for agent in agents) else lifted.unserved_row()
     return [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
 
 
-def _balance(rows: _Rows, part: int, held: LiftedObject, served: list[int], tolerance: float) -> None:
+def _balance(rows: _Rows, part: int, lifted: LiftedObject, served: list[int], tolerance: float) -> None:
     """Eq. 17 [N, Nm]."""
     rows.add(rows.outputs_at(part, rows.knots, np.array(served)), 1.0)
     bound = np.full(len(served), tolerance)
-    rows.close("balance", held.name, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, len(rows.knots))
+    rows.close("balance", lifted.name, tuple(BALANCE_ROWS[r] for r in served), -bound, bound, len(rows.knots))
 
 
 def _velocity(rows: _Rows, part: int, who: str, labels: tuple[str, ...], limit: Array) -> None:

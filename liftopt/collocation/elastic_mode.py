@@ -1,8 +1,8 @@
-"""Which limits a lift would have to break, where, when and by how much: the problem with a price on breaking them.
+"""The elastic mode: which limits a lift would have to break, where, when and by how much.
 
-Every row but the balance may be violated; what is violated is paid for, linearly, so that few rows are (an exact
-penalty: a lift that is possible is found with none broken). A little of the objective is kept, to choose among motions.
-Ranges of motion, poses at the ends and the object's balance hold as ever.
+Every row but the balance may be violated, at a price that is linear in the violation. So few rows are violated, and a
+lift that is possible is found with none broken (an exact penalty). A little of the objective is kept, to choose among
+motions. Ranges of motion, poses at the ends and the object's balance always hold.
 """
 
 from __future__ import annotations
@@ -20,14 +20,15 @@ from liftopt.collocation.batch import Batch
 from liftopt.collocation.constraints import Block
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
-from liftopt.collocation.solvers.simd_nlp import wide_nlp
+from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
 
 Array = npt.NDArray[np.float64]
 # Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space: a broken limit can be put right by
 # someone stronger or slower, a grasp that does not hold cannot.
-CLOSURE_PRICE, SHARE_PRICE, KEEP_IN_PRICE = 1000.0, 10.0, 100.0
+CLOSURE_PRICE, SHARE_PRICE, WORKSPACE_PRICE = 1000.0, 10.0, 100.0
 LINEAR = OBJECT_COORDINATES[:3]
 # Weight of the objective beside the prices; its multipliers stay far below them.
 OBJECTIVE = 1e-4
@@ -62,7 +63,7 @@ class Violation:
 
 
 @dataclass(frozen=True)
-class Elastic:
+class ElasticMotion:
     """A motion that breaks as little as possible.
 
     Attributes:
@@ -83,7 +84,7 @@ class Elastic:
         return self.converged and not self.violations
 
 
-def elastic(problem: Problem, x0: Array, deadline: float, most: int = MAX_ITERATIONS) -> Elastic:
+def solve_elastic(problem: Problem, x0: Array, deadline: Deadline, most: int = MAX_ITERATIONS) -> ElasticMotion:
     """Return the motion near ``x0`` (n_x,) that breaks as little as possible, after ``most`` iterations at the latest.
 
     Raises:
@@ -94,7 +95,7 @@ def elastic(problem: Problem, x0: Array, deadline: float, most: int = MAX_ITERAT
     result = Ipopt(soft, IpoptOptions(TOLERANCE, MAX_ITERATIONS, 1.0)).solve(start, deadline=deadline, most=most)
     x, slack = np.split(result.x, [problem.layout.n_x])
     lower, upper = problem.bounds()
-    return Elastic(np.clip(x, lower, upper), soft.violations(slack), result.converged, result.iterations)
+    return ElasticMotion(np.clip(x, lower, upper), soft.violations(slack), result.converged, result.iterations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +126,7 @@ class SoftProblem(Problem):
     def hard(self) -> Nlp:
         """The functions of the plain problem; callbacks among them must outlive what calls them."""
         kernels = kernels_for_simd(self.plain)
-        return wide_nlp(self.plain, kernels) if kernels else self.plain.nlp
+        return simd_nlp(self.plain, kernels) if kernels else self.plain.nlp
 
     @cached_property
     def nlp(self) -> Nlp:
@@ -189,7 +190,7 @@ class SoftProblem(Problem):
             phase = phase[self.mesh.closure_knots]
             amounts, prices = np.linalg.norm(amounts, axis=1)[:, None], prices[:, :1]
             share, who = amounts, [block.who]
-        elif block.name == "keep_in":
+        elif block.name == "workspace":
             who = [block.who]
         elif block.name == "torque":
             limits, unit = self.team.agents[names.index(block.who)].limits, "Nm"
@@ -241,8 +242,8 @@ class SoftProblem(Problem):
     def _unit_price(self, block: Block) -> Array:
         if block.name == "closure":
             return np.full(len(block.lower), CLOSURE_PRICE)
-        if block.name == "keep_in":
-            return np.full(len(block.lower), KEEP_IN_PRICE)
+        if block.name == "workspace":
+            return np.full(len(block.lower), WORKSPACE_PRICE)
         if block.name == "velocity":
             return SHARE_PRICE / block.upper
         # The squared share of a force grows twice as fast as the share.

@@ -116,9 +116,9 @@ def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Arr
     # Forces and moments take turns in y.
     wrenches = y[:, 18:].reshape(len(y), -1, 2, 3)
     forces, moments = (wrenches[:, :, i].reshape(len(y), -1) for i in (0, 1))
-    bare = np.hstack([y[:, :18], forces])
-    slopes = object_wrench_slopes(team.object, y, _object_slopes(team.object, bare, period))
-    return _object_outputs(team.object, bare, period, moments), slopes
+    without_moments = np.hstack([y[:, :18], forces])
+    slopes = object_wrench_slopes(team.object, y, _object_slopes(team.object, without_moments, period))
+    return _object_outputs(team.object, without_moments, period, moments), slopes
 
 
 def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
@@ -147,14 +147,14 @@ def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
     return np.hstack([tau + turned(slope, f), point, (f**2).sum(axis=1)[:, None]]), jacobian
 
 
-def _object_outputs(held: LiftedObject, y: Array, period: float, moments: Array | None = None) -> Array:
-    moved = object_trajectory(held, y[:, :6], y[:, 6:12] / period, y[:, 12:18] / period**2, y[:, 18:], moments)
+def _object_outputs(lifted: LiftedObject, y: Array, period: float, moments: Array | None = None) -> Array:
+    moved = object_trajectory(lifted, y[:, :6], y[:, 6:12] / period, y[:, 12:18] / period**2, y[:, 18:], moments)
     return np.hstack([moved.wrench, moved.grasp_position.reshape(len(y), -1)])
 
 
-def _object_slopes(held: LiftedObject, y: Array, period: float) -> Array:
+def _object_slopes(lifted: LiftedObject, y: Array, period: float) -> Array:
     """Return the Jacobians (K, n_c, n_y): Pinocchio's by the free-flyer's motion, times that motion's by y."""
-    model, data = held.model, held.model.createData()
+    model, data = lifted.model, lifted.model.createData()
     rotation, spin = attitude(y[:, 3:6])
     back = rotation.swapaxes(1, 2)
     # The motion (q in its tangent space, v, a) by x, x', x''.
@@ -171,7 +171,7 @@ def _object_slopes(held: LiftedObject, y: Array, period: float) -> Array:
         generalized[k] = pin.rnea(model, data, q[k], v[k], a[k])
         by_motion[k] = np.hstack(pin.computeRNEADerivatives(model, data, q[k], v[k], a[k]))
     by_motion[:, :, 12:] = _mirrored(by_motion[:, :, 12:])
-    levers = [model.frames[model.getFrameId(name)].placement.translation for name in held.grasp_frames]
+    levers = [model.frames[model.getFrameId(name)].placement.translation for name in lifted.grasp_frames]
     jacobian = np.zeros((len(y), OBJECT_SIZE + 3 * len(levers), y.shape[1]))
     jacobian[:, :OBJECT_SIZE, :18] = by_motion @ motion
     jacobian[:, :3] = rotation @ jacobian[:, :3]

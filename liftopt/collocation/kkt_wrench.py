@@ -55,15 +55,15 @@ def add_agent_wrench(agent: Agent, y: Array, outputs: Array, slopes: Array) -> t
     return outputs, np.concatenate([slopes, added], axis=1)
 
 
-def object_wrench_slopes(held: LiftedObject, y: Array, slopes: Array) -> Array:
+def object_wrench_slopes(lifted: LiftedObject, y: Array, slopes: Array) -> Array:
     """Return the Jacobians (K, n_c, 18 + 6 m) of the object with moments.
 
     Args:
-        held: the object.
+        lifted: the object.
         y: (K, 18 + 6 m) knot variables.
         slopes: (K, n_c, 18 + 3 m) of the object with the same forces and no moments.
     """
-    grasps = len(held.grasp_frames)
+    grasps = len(lifted.grasp_frames)
     rotation, angles = attitude(y[:, 3:6])[0], y[:, None, 3:6] + 1j * STEP * np.eye(3)
     turning = attitude(angles)[0].imag / STEP
     whole = np.zeros((*slopes.shape[:2], y.shape[1]))

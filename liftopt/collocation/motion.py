@@ -46,8 +46,8 @@ def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array
         own = layout.columns(i)
         agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, i], moments[:, i]))
     own = layout.columns(layout.n_agents)
-    held = object_trajectory(problem.team.object, q[:, own], v[:, own], a[:, own], forces, moments)
-    return Motion(phase * period, tuple(agents), held)
+    lifted = object_trajectory(problem.team.object, q[:, own], v[:, own], a[:, own], forces, moments)
+    return Motion(phase * period, tuple(agents), lifted)
 
 
 def objective_terms(motion: Motion) -> dict[str, float]:

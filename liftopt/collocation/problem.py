@@ -51,7 +51,7 @@ class Team:
     @staticmethod
     def of(
         agents: tuple[Agent, ...],
-        held: LiftedObject,
+        lifted: LiftedObject,
         progress: Callable[[str], None] | None = None,
         like: Team | None = None,
     ) -> Team:
@@ -59,18 +59,18 @@ class Team:
 
         Args:
             agents: in the order of the object's grasp frames.
-            held: the object.
+            lifted: the object.
             progress: hears of it when that takes long.
             like: a team whose kernels are taken if they are the ones.
         """
-        _check(agents, held)
-        requests = kernel_requests(agents, held)
+        _check(agents, lifted)
+        requests = kernel_requests(agents, lifted)
         topologies = tuple(topology for _, topology in requests)
         signatures = tuple(topology.signature() for topology in topologies)
         kernels = (
             like.kernels if like is not None and like.signatures == signatures else load_kernels(requests, progress)
         )
-        return Team(agents, held, topologies, tuple(kernels))
+        return Team(agents, lifted, topologies, tuple(kernels))
 
     @cached_property
     def signatures(self) -> tuple[str, ...]:
@@ -204,7 +204,7 @@ class Problem:
         return np.clip(x, *self._bounds)
 
 
-def kernel_requests(agents: tuple[Agent, ...], held: LiftedObject) -> list[tuple[Builder, Topology]]:
+def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tuple[Builder, Topology]]:
     """Return what to generate the kernels of the agents and then of the object from."""
     requests: list[tuple[Any, Topology]] = []
     for agent in agents:
@@ -214,20 +214,22 @@ def kernel_requests(agents: tuple[Agent, ...], held: LiftedObject) -> list[tuple
         else:
             requests.append((wrench_agent_functions, WrenchTopology.holding(model, frames, grasp.R_hand_object)))
     if all(agent.grasp.is_point_contact for agent in agents):
-        requests.append((object_functions, Topology.of(held.model, held.grasp_frames)))
+        requests.append((object_functions, Topology.of(lifted.model, lifted.grasp_frames)))
     else:
-        requests.append((wrench_object_functions, WrenchTopology.holding(held.model, held.grasp_frames)))
+        requests.append((wrench_object_functions, WrenchTopology.holding(lifted.model, lifted.grasp_frames)))
     return requests
 
 
-def _check(agents: tuple[Agent, ...], held: LiftedObject) -> None:
+def _check(agents: tuple[Agent, ...], lifted: LiftedObject) -> None:
     """Refuse models that the equations do not hold for."""
-    if len(agents) != len(held.grasp_frames):
-        raise ModelError(f"{held.name}: {len(held.grasp_frames)} grasp frames for {len(agents)} agents; give one each")
+    if len(agents) != len(lifted.grasp_frames):
+        raise ModelError(
+            f"{lifted.name}: {len(lifted.grasp_frames)} grasp frames for {len(agents)} agents; give one each"
+        )
     if not any(agent.grasp.moments for agent in agents):
-        held.unserved_row()  # refuses grasps at one point, which could hold nothing
-    if np.abs(held.model.inertias[1].lever).max() > STRUCTURAL_ZERO:
-        raise ModelError(f"{held.name}: its body frame must be at its centre of mass")
+        lifted.unserved_row()  # refuses grasps at one point, which could hold nothing
+    if np.abs(lifted.model.inertias[1].lever).max() > STRUCTURAL_ZERO:
+        raise ModelError(f"{lifted.name}: its body frame must be at its centre of mass")
     for agent in agents:
         weak = (agent.limits.tau_lower >= 0) | (agent.limits.tau_upper <= 0)
         for joint in np.array(agent.moving_joints)[weak]:

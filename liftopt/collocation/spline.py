@@ -17,7 +17,8 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 DEGREE = 3
-FEWEST = 6
+# Intervals of a mesh.
+FEWEST, FINEST = 6, 400
 # What is zero at both ends, and how many control points are equal there.
 TIED = {"velocity": 2, "acceleration": 3}
 

@@ -192,10 +192,10 @@ def _solve(args: argparse.Namespace) -> int:
     out = Path("results", scenario.name) if args.out is None else Path(args.out)
     with _output_folder(out), _progress() as progress:
         with _no_collection():
-            from liftopt.search.solve import lift
+            from liftopt.search.solve import solve
             from liftopt.storage.writer import save
 
-        solution = lift(scenario, progress=progress)
+        solution = solve(scenario, progress=progress)
         progress("writing the result")
         folder = save(solution, out)
     from liftopt.commands.solved_text import solved_text

@@ -59,7 +59,7 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
     scenario = scenario_or_solved(args.scenario, args.overrides)
     from liftopt.studies.sensitivity import study
 
-    candidate, cache = _sharp_plan(scenario, progress)
+    candidate, cache = _polished(scenario, progress)
     found = study(candidate, cache, progress=progress)
     if plot is not None:
         _write_plot(found, plot)
@@ -93,8 +93,8 @@ def study_dict(study: Study) -> dict[str, Any]:
     }
 
 
-def _sharp_plan(scenario: Scenario, progress: Callable[[str], None] | None) -> tuple[Candidate, SolverCache]:
-    """Return the best plan, polished as far as the solver goes, and the workshop it comes from."""
+def _polished(scenario: Scenario, progress: Callable[[str], None] | None) -> tuple[Candidate, SolverCache]:
+    """Return the best candidate, polished as far as the solver goes, and the cache it comes from."""
     from liftopt.control.replanning import Replanner
     from liftopt.search.cache import SolverCache
 

@@ -9,6 +9,7 @@ from typing import Any
 from liftopt.assessment.text import details_text, verdict_text
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
+from liftopt.storage.writer import files_of
 
 
 def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: bool) -> str:
@@ -21,7 +22,7 @@ def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: boo
         details: also all findings and the tables; of an iterate only how the solver fared.
     """
     if as_json:
-        return json.dumps(summary_dict(solution, folder), allow_nan=False) + "\n"
+        return json.dumps(summary_dict(solution, folder, files_of(solution)), allow_nan=False) + "\n"
     parts = [verdict_text(solution, folder)] if solution.solved else []
     if details:
         parts.append(details_text(solution.assessment) + _tables(summary_dict(solution, folder)))

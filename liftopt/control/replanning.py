@@ -18,12 +18,14 @@ from dataclasses import replace
 
 from liftopt.assessment.assess import assessed
 from liftopt.collocation.codegen.kernels import Progress
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.mesh_refinement import estimate
-from liftopt.search.solve import Search
+from liftopt.search.mesh_accuracy import estimate
+from liftopt.search.session import Session
+from liftopt.search.solve import find_lift, solution_of
 from liftopt.solution.solution import Solution, StartRecord
 
 WARM = "last optimum"
@@ -32,27 +34,27 @@ WARM = "last optimum"
 class Replanner:
     """Plans one scenario after the other, each from the optimum of the one before; for one thread.
 
-    A warm solve follows one local optimum as the scenario changes. Where a better one has appeared elsewhere, only
-    ``lift`` or ``solve(..., cold=True)`` finds it. The solver is the scenario's: ``solver.name=banded`` is the one that
-    is fast from a warm start.
+    A warm solve follows one local optimum as the scenario changes. Where a better one has appeared elsewhere, only a
+    search from many starts (``cold=True``) finds it. The solver is the scenario's: ``solver.name=banded`` is the one
+    that is fast from a warm start.
 
     Attributes:
         latest: the plan that the next one starts from, None before the first.
     """
 
     def __init__(self, progress: Progress | None = None, cache: SolverCache | None = None) -> None:
-        """Start without a plan.
+        """Start without an optimum.
 
         Args:
             progress: hears one line at a time of what is going on.
             cache: that others use too; None: one of its own.
         """
         self.latest: Candidate | None = None
-        self._workshop = cache or SolverCache()
-        self._say = progress or (lambda line: None)
+        self._cache = cache or SolverCache()
+        self._progress = progress or (lambda line: None)
 
     def solve(self, scenario: Scenario, *, cold: bool = False) -> Solution:
-        """Return the verified solution of a scenario, or why there is none in its ``status``, as ``lift`` does.
+        """Return the verified solution of a scenario, or why there is none in its ``status``.
 
         Args:
             scenario: what to lift.
@@ -62,19 +64,18 @@ class Replanner:
             InputError: a value of the scenario cannot be used.
             SolverError: the solver cannot run at all.
         """
-        began = time.monotonic()
+        limit = Deadline.after(scenario.solver.time_limit)
         candidate = None if cold else self.replan(scenario)
         if candidate is not None and candidate.solved:
-            result, now = candidate.result, time.monotonic()
+            result, seconds = candidate.result, time.monotonic() - limit.began
             record = StartRecord(candidate.start, "converged", result.objective, result.iterations, result.seconds)
-            solution = candidate.solution([record], {"setup": 0.0, "total": now - began})
-            late = began + scenario.solver.time_limit
-            return assessed(replace(solution, accuracy=estimate(self._workshop, candidate, late, self._say)))
-        search = Search(scenario, self._workshop, motions_of(scenario), self._say)
-        best = search.sharpened(search.best())
-        if best.solved:
-            self.latest = best
-        return assessed(search.solution(best))
+            solution = candidate.solution([record], {"setup": 0.0, "total": seconds})
+            return assessed(replace(solution, accuracy=estimate(self._cache, candidate, limit, self._progress)))
+        session = Session(scenario, self._cache, self._progress)
+        found = find_lift(session)
+        if found.best.solved:
+            self.latest = found.best
+        return assessed(solution_of(session, found))
 
     def replan(self, scenario: Scenario) -> Candidate | None:
         """Return the plan of a changed scenario from the latest one, as fast as it can be had and not yet verified.
@@ -92,12 +93,12 @@ class Replanner:
         last = self.latest
         if last is None or motions_of(last.scenario) != motions_of(scenario):
             return None
-        self._say("solving from the last optimum")
-        problem = self._workshop.problem(scenario, last.spline, self._say)
+        self._progress("solving from the last optimum")
+        problem = self._cache.problem(scenario, last.spline, self._progress)
         if not problem.same_structure(last.problem):
             return None
-        solver = self._workshop.solver(problem, scenario, scenario.solver.name, self._say)
-        deadline = time.monotonic() + scenario.solver.time_limit
+        solver = self._cache.solver(problem, scenario, scenario.solver.name, self._progress)
+        deadline = Deadline.after(scenario.solver.time_limit)
         result = solver.solve(last.result.x, deadline=deadline, warm=last.result.multipliers, problem=problem)
         if not result.converged:
             return None

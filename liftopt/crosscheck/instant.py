@@ -109,7 +109,7 @@ def instant(agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask) -> In
         ca.Function("balance", [y], ca.cse([balance])),
         ca.Function("closure", [q], ca.cse([ca.vertcat(*hands) - ca.vertcat(*edges)])),
         ca.Function("grasp", [y], [ca.vertcat(*(ca.dot(f, f) for f in forces))]),
-        ca.Function("keep_in", [q], ca.cse([ca.vertcat(*distances)])),
+        ca.Function("workspace", [q], ca.cse([ca.vertcat(*distances)])),
     )
 
 

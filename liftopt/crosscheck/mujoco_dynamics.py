@@ -55,9 +55,10 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
         InputError: MuJoCo is not installed.
     """
     mujoco = import_mujoco()
-    model = spec_of(solution).compile()
+    model = spec_of(solution.urdfs.values()).compile()
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-    data, states, held = mujoco.MjData(model), states_of(model, solution), solution.object
+    data, held = mujoco.MjData(model), solution.object
+    states = states_of(model, solution.agents, held)
     bodies = [model.body(f"{agent.name}_grasp").id for agent in solution.agents]
     edges = [model.body(f"grasp_{agent.name}").id for agent in solution.agents]
     top = model.body(held.name).id

@@ -136,7 +136,9 @@ class Simulation:
     @cached_property
     def _model(self) -> Any:
         mujoco = import_mujoco()
-        spec = spec_of(self.solution, [name for agent in self.solution.agents for name in _pinned(agent)])
+        spec = spec_of(
+            self.solution.urdfs.values(), [name for agent in self.solution.agents for name in _pinned(agent)]
+        )
         make_balls(spec, self._balls)
         for agent in self.solution.agents:
             ends = (f"{agent.name}_grasp", f"grasp_{agent.name}")
@@ -162,7 +164,7 @@ class Simulation:
 
     @cached_property
     def _states(self) -> States:
-        states = states_of(self._model, self._dense)
+        states = states_of(self._model, self._dense.agents, self._dense.object)
         for ball in self._balls:
             at, rate = self._places[ball.hinges[-1]]
             states.qpos[:, at : at + 4], states.qvel[:, rate] = ball.quaternion, ball.velocity

@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from liftopt.collocation.motion import Motion, motion_at
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -137,7 +138,7 @@ def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Prob
     phase = dense.time / dense.time[-1]
     force = np.hstack([agent.grasp_force for agent in solution.agents])
     start = nearest(problem, spline, phase, coordinates, force)
-    return problem, spline, Ipopt(problem).solve(start, deadline=np.inf)
+    return problem, spline, Ipopt(problem).solve(start, deadline=NEVER)
 
 
 def points_of(motion: Motion, at: Coordinates) -> Points:

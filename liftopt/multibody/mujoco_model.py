@@ -9,7 +9,7 @@ limits are off.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -21,7 +21,6 @@ from scipy.spatial.transform import Rotation
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
-from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
 # Earlier releases leave the term dJ/dt v of a constraint's acceleration out, and their grasps drift.
@@ -44,30 +43,30 @@ def import_mujoco() -> ModuleType:
     return mujoco
 
 
-def spec_of(solution: Solution, fixed: Sequence[str] = ()) -> Any:
-    """Return one ``MjSpec`` of all models of a solution in one world, gravity on, contacts and limits off.
+def spec_of(urdfs: Iterable[str], fixed: Sequence[str] = ()) -> Any:
+    """Return one ``MjSpec`` of several models in one world, gravity on, contacts and limits off.
 
     Args:
-        solution: its URDFs are read.
+        urdfs: texts of the models.
         fixed: names of joints to weld at zero.
 
     Raises:
         InputError: MuJoCo is not installed.
     """
     mujoco = import_mujoco()
-    spec = mujoco.MjSpec.from_string(merged_urdf(solution, fixed))
+    spec = mujoco.MjSpec.from_string(merged_urdf(urdfs, fixed))
     spec.option.gravity = [0.0, 0.0, -9.81]
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return spec
 
 
-def merged_urdf(solution: Solution, fixed: Sequence[str] = ()) -> str:
-    """Return all models of a solution as one URDF, the object as a floating body, with the changes named above."""
+def merged_urdf(urdfs: Iterable[str], fixed: Sequence[str] = ()) -> str:
+    """Return several models as one URDF, a model without a root ``world`` as a floating body; see above."""
     merged = ElementTree.Element("robot", name="lift")
     options = dict(fusestatic="false", boundmass=f"{NEGLIGIBLE}", boundinertia=f"{NEGLIGIBLE}")
     ElementTree.SubElement(ElementTree.SubElement(merged, "mujoco"), "compiler", options)
     ElementTree.SubElement(merged, "link", name="world")
-    for text in solution.urdfs.values():
+    for text in urdfs:
         robot = ElementTree.fromstring(text.encode())
         children = {joint.find("child").get("link") for joint in robot.iter("joint")}  # type: ignore[union-attr]
         for link in robot.findall("link"):
@@ -99,7 +98,7 @@ class States:
     Attributes:
         qpos: (K, nq).
         qvel, qacc: (K, nv).
-        tau: (K, nv) joint torques of the solution, 0 at the free body [Nm or N].
+        tau: (K, nv) joint torques, 0 at the free body [Nm or N].
     """
 
     qpos: Array
@@ -108,12 +107,12 @@ class States:
     tau: Array
 
 
-def states_of(model: Any, solution: Solution) -> States:
-    """Return a solution's motion for a model of ``spec_of``; joints that are welded there are left out."""
-    times, held = len(solution.time), solution.object
+def states_of(model: Any, agents: Sequence[AgentTrajectory], held: ObjectTrajectory) -> States:
+    """Return a motion for a model of ``spec_of``; joints that are welded there are left out."""
+    times = len(held.pose)
     qpos = np.zeros((times, model.nq))
     qvel, qacc, tau = np.zeros((3, times, model.nv))
-    for agent in solution.agents:
+    for agent in agents:
         for j, (position, dof) in enumerate(joint_places(model, agent)):
             if dof >= 0:
                 qpos[:, position], qvel[:, dof], qacc[:, dof] = agent.q[:, j], agent.v[:, j], agent.a[:, j]

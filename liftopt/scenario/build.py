@@ -21,7 +21,6 @@ from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import grasp_points, lead, stand_of
 from liftopt.scenario.task import GraspPlace
-from liftopt.scenario.urdf_files import urdf_files
 
 Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
@@ -33,7 +32,7 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 
     Args:
         scenario: who they are.
-        urdfs: file name -> text of the models if they were written before, as a solution keeps them.
+        urdfs: name -> text of the models if they were written before, as a solution keeps them.
 
     Raises:
         InputError: a model cannot be what the scenario says.
@@ -43,7 +42,7 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 
 def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the agent of that name; ``urdfs`` as in ``agents_of``."""
-    who, urdf = scenario.agents[name], (urdfs or {}).get(urdf_files(scenario)[name])
+    who, urdf = scenario.agents[name], (urdfs or {}).get(name)
     stand = stand_of(scenario, name)
     place = Placement.at(*stand)
     if isinstance(who, Person):
@@ -85,7 +84,7 @@ def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Lif
         depth=box.depth,
         width=box.width,
         height=box.height,
-        urdf=(urdfs or {}).get(urdf_files(scenario)[box.name]),
+        urdf=(urdfs or {}).get(box.name),
         name=box.name,
         grasps=grasp_points(scenario),
     )

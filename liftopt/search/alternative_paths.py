@@ -1,9 +1,8 @@
-"""Other ways: one agent along the object's path as it is, but from another posture, which nothing tells it to take.
+"""Alternative paths: one agent follows the object's path as it is, but from another posture.
 
-Random postures at the start, in the middle and at the end are brought to the object by inverse kinematics and then
-follow it to both ends. What comes of them is far from optimal but nearly closes the grasps. That one agent at a time is
-enough mostly: of 49 searches that had ended 5 % or more above the best known optimum of widely varied lifts, 32 came
-within 2 % of it when one agent's motion was put in the place of what it was.
+Random postures at the start, in the middle and at the end are brought to the object by inverse kinematics. From there
+they follow it to both ends. What comes of that is far from optimal but nearly closes the grasps. To change one agent at
+a time is mostly enough (docs/tuning.md).
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ import numpy.typing as npt
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.transfer import nearest_controls
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import CLOSING_ITERATIONS, FOLLOWING_ITERATIONS, InverseKinematics
@@ -21,44 +21,44 @@ from liftopt.search.moves import apart, further, keep_different
 from liftopt.search.postures import scattered
 
 Array = npt.NDArray[np.float64]
-# Postures tried at each of three times, and ways of each agent that are kept.
+# Postures tried at each of three times, and paths of each agent that are kept.
 SEEDS, MOST = 8, 6
 # Gap [m] that inverse kinematics may leave: the solver closes it.
 GAP = 0.02
-# Ways whose links are nearer than this [m] at all three times are the same.
-SAME = 0.06
+# Paths whose links are nearer than this [m] at all three times are the same.
+SAME_PATH = 0.06
 
 
-def other_ways(
-    problem: Problem, kinematics: InverseKinematics, x: Array, rng: np.random.Generator, deadline: float
+def alternative_paths(
+    problem: Problem, kinematics: InverseKinematics, x: Array, rng: np.random.Generator, deadline: Deadline
 ) -> list[InitialGuess]:
-    """Return a motion with one agent on another way, for a few ways of each, the agents taking turns.
+    """Return a motion with one agent on another path, for a few paths of each; the agents take turns.
 
     Args:
         problem: the lift.
         kinematics: of its team.
         x: the motion (n_x,).
         rng: where the postures come from.
-        deadline: ``time.monotonic`` value past which inverse kinematics stops.
+        deadline: past which inverse kinematics stops.
     """
     layout, agents = problem.layout, problem.team.agents
     here = np.einsum("kc,cn->kn", problem.mesh.basis[0], x[layout.control])
     middle = len(here) // 2
-    way = _followed(problem, kinematics, here, np.repeat([0, middle, len(here) - 1], SEEDS), rng, deadline)
-    if not way.size:
+    paths = _followed(problem, kinematics, here, np.repeat([0, middle, len(here) - 1], SEEDS), rng, deadline)
+    if not paths.size:
         return []
-    control, batch, found = nearest_controls(problem, way), Batch(problem), []
+    control, batch, found = nearest_controls(problem, paths), Batch(problem), []
     for i, agent in enumerate(agents):
         own = layout.control[:, layout.columns(i)]
         changed = np.tile(x, (len(control), 1))
         changed[:, own] = control[:, :, layout.columns(i)]
         speed = np.abs(np.einsum("sc,bcn->bsn", problem.mesh.slope, changed[:, own])) / problem.task.duration
         excess = np.maximum(0.0, speed - agent.limits.velocity).max(axis=1).sum(axis=1)
-        # The first row is the motion as it is, which is no other way.
-        q = np.concatenate([here[:, None], way], axis=1)[:, :, layout.columns(i)]
+        # The first row is the motion as it is, which is no other path.
+        q = np.concatenate([here[:, None], paths], axis=1)[:, :, layout.columns(i)]
         between = np.max([apart(agent, q[k]) for k in (0, middle, -1)], axis=0)
         order = np.argsort(batch.terms(changed)[i] * (1 + excess), kind="stable") + 1
-        kept = keep_different([0, *order], further(between, SAME), MOST + 1)
+        kept = keep_different([0, *order], further(between, SAME_PATH), MOST + 1)
         found.append([InitialGuess(f"{agent.name} another way {n}", changed[k - 1]) for n, k in enumerate(kept[1:], 1)])
     return [own[n] for n in range(MOST) for own in found if n < len(own)]
 
@@ -69,7 +69,7 @@ def _followed(
     here: Array,
     at: npt.NDArray[np.int64],
     rng: np.random.Generator,
-    deadline: float,
+    deadline: Deadline,
 ) -> Array:
     """Return coordinates (K, B, n) along the object's path in ``here`` (K, n), from scattered postures at knots ``at``.
 
@@ -84,7 +84,7 @@ def _followed(
     way = np.empty((len(here), len(at), here.shape[1]))
     way[at, np.arange(len(at))] = first
     # From there each is followed in both directions at once.
-    held, last = np.full(len(at), True), np.tile(first, (2, 1))
+    follows, last = np.full(len(at), True), np.tile(first, (2, 1))
     who, sign = np.tile(np.arange(len(at)), 2), np.repeat([1, -1], len(at))
     for step in range(1, len(here)):
         knot = at[who] + sign * step
@@ -93,5 +93,5 @@ def _followed(
         if len(who):
             reach = kinematics.reach(here[knot, -OBJECT_SIZE:], last, deadline, most=FOLLOWING_ITERATIONS)
             last = way[knot, who] = reach.coordinates
-            held[who[~(reach.shortfall < GAP)]] = False
-    return way[:, held]
+            follows[who[~(reach.shortfall < GAP)]] = False
+    return way[:, follows]

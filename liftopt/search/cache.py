@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from functools import partial
+from operator import is_not
 from typing import Any, TypeVar
 
 from liftopt.collocation.codegen.kernels import Progress
@@ -18,7 +19,8 @@ from liftopt.scenario.model import Scenario
 from liftopt.search.postures import PostureSolver
 
 T = TypeVar("T")
-# Of the objective inside IPOPT: from twelve starts of a lift 26 iterations in the median, with 0.1 they were 30.
+BANDED, IPOPT = "banded", "ipopt"  # solvers by name
+# Of the objective inside IPOPT: with a larger one it takes more iterations (docs/tuning.md).
 LIFT_SCALING = 0.03
 
 
@@ -39,23 +41,22 @@ class SolverCache:
         self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
-        """Return the lift of a scenario on a mesh; ``say`` hears of it when kernels must be compiled first."""
+        """Return the lift of a scenario on a mesh; ``progress`` hears of it when kernels must be compiled first."""
         agents = tuple(
             self._kept(name, agent_key(scenario, name), partial(agent_of, scenario, name)) for name in scenario.agents
         )
-        held = self._kept("the object", object_key(scenario), partial(object_of, scenario))
-        team = self._team
-        if team is None or any(
-            new is not old for new, old in zip((*agents, held), (*team.agents, team.object), strict=True)
-        ):
-            team = self._team = Team.of(agents, held, progress, like=team)
+        lifted = self._kept("the object", object_key(scenario), partial(object_of, scenario))
+        team, models = self._team, (*agents, lifted)
+        known = (*team.agents, team.object) if team else ()
+        if team is None or len(known) != len(models) or any(map(is_not, models, known)):
+            team = self._team = Team.of(agents, lifted, progress, like=team)
         if spline not in self._meshes:
             self._meshes[spline] = spline.mesh()
-        known = self._problems.get(spline)
-        if known is None or known[0] != scenario or known[1].team is not team:
-            known = scenario, Problem(team, task_of(scenario), self._meshes[spline])
-            self._problems[spline] = known
-        return known[1]
+        kept = self._problems.get(spline)
+        if kept is None or kept[0] != scenario or kept[1].team is not team:
+            kept = scenario, Problem(team, task_of(scenario), self._meshes[spline])
+            self._problems[spline] = kept
+        return kept[1]
 
     def solver(
         self,
@@ -76,7 +77,7 @@ class SolverCache:
         kept = self._solvers.get(key)
         if kept is None or not problem.interchangeable(kept[0]):
             made: Solver
-            if name == "banded":
+            if name == BANDED:
                 made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), progress)
             else:
                 options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)
@@ -85,7 +86,7 @@ class SolverCache:
         return kept[1]
 
     def postures(self, problem: Problem, scenario: Scenario, progress: Progress | None = None) -> PostureSolver:
-        """Return the solver of static postures for a lift; ``say`` hears of it when kernels must be compiled first."""
+        """Return the solver of static postures for a lift; ``progress`` hears of kernels that are compiled first."""
         workers = scenario.solver.workers
         self._postures = PostureSolver(problem.team, problem.task, progress, like=self._postures, workers=workers)
         return self._postures

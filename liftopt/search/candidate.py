@@ -14,7 +14,6 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import SOLVED, Solution, StartRecord
 from liftopt.solution.verify import verify
@@ -32,7 +31,7 @@ class Candidate:
         spline: its space of motions.
         start: name of where the solver started.
         result: where it stopped.
-        obstacles: why there cannot be a solution, one line; empty if nothing is known to be in the way.
+        infeasible: why there cannot be a solution, one line; empty if nothing is known to be in the way.
         origin: on another mesh, from which it was solved; None if it was not.
     """
 
@@ -41,7 +40,7 @@ class Candidate:
     spline: RestToRestSpline
     start: str
     result: SolverResult
-    obstacles: str = ""
+    infeasible: str = ""
     origin: Candidate | None = None
 
     @cached_property
@@ -52,8 +51,8 @@ class Candidate:
     @cached_property
     def outcome(self) -> str:
         """``"solved"`` as far as the solver knows, or why not, in one line."""
-        if self.obstacles:
-            return f"infeasible: {self.obstacles}"
+        if self.infeasible:
+            return f"infeasible: {self.infeasible}"
         if self.result.converged:
             return SOLVED
         late, limit = self.result.status == STOPPED, self.scenario.solver.time_limit
@@ -71,6 +70,11 @@ class Candidate:
         return self.outcome == SOLVED and [c.name for c in self.verification.checks if not c.passed] == [
             "closure between knots"
         ]
+
+    @property
+    def usable(self) -> bool:
+        """Whether it is solved, or would be on a finer mesh."""
+        return self.solved or self.refinable
 
     def at(self, time: Array) -> Motion:
         """Return what everybody does at ``time`` (K,) [s], by Pinocchio: q, v, a, torques, grasp forces, the object.
@@ -93,7 +97,6 @@ class Candidate:
         """
         motion, team = motion_at(self.problem, self.spline, self.result.x, self.spline.phase), self.problem.team
         terms, weights = objective_terms(motion), objective_weights(self.problem)
-        files = urdf_files(self.scenario)
         urdfs = {agent.name: agent.urdf for agent in team.agents} | {team.object.name: team.object.urdf}
         return Solution(
             scenario=self.scenario,
@@ -101,7 +104,7 @@ class Candidate:
             time=motion.time,
             agents=motion.agents,
             object=motion.object,
-            urdfs={files[name]: text for name, text in urdfs.items()},
+            urdfs=urdfs,
             objective=sum(weights[name] * value for name, value in terms.items()),
             objective_terms=terms,
             objective_weights=weights,

@@ -1,95 +1,93 @@
-"""Scouting: many starts on a coarse mesh, of which the best optima are taken to the mesh that was asked for.
+"""Coarse search: many starts on a coarse mesh, of which the best optima are taken to the mesh that was asked for.
 
-The coarse mesh has half as many intervals, or half of that again until they are few (``refinement.meshes_below``). A
-solve costs less there, and an optimum of it is a warm start on a finer one. It tells good motions from bad ones: of 24
-starts of each of 53 widely varied lifts, the four with the best optima on eight intervals led to within 5 % of the best
-of all 24 in 50 lifts, the four most promising ones (``moves.py``) in 32.
+The coarse mesh has half as many intervals, or half of that again until they are few (``meshes_below``). A solve costs
+less there, its optimum is a warm start on a finer mesh, and it tells good motions from bad ones far better than their
+ranking does (``moves.py``). ``docs/tuning.md`` has the figures behind the constants.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.solvers.result import Solver, SolverResult
+from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import FEWEST, RestToRestSpline
 from liftopt.errors import SolverError
+from liftopt.search.cache import BANDED
 from liftopt.search.candidate import Candidate
 from liftopt.search.initial_guess import InitialGuess, InitialGuessSet
-from liftopt.search.mesh_refinement import MESH, PROMISING, QUICKEST, each_once, meshes_below, same_optimum
+from liftopt.search.mesh_refinement import PROMISING, meshes_below
 from liftopt.search.multistart import follow_up, solve_all
+from liftopt.search.optima import each_once, same_optimum
+from liftopt.search.optimum_on_mesh import MESH
+from liftopt.search.session import Session
 from liftopt.search.variations import vary
 
-if TYPE_CHECKING:
-    from liftopt.search.solve import Search
-
-# A scout is given up where it promises nothing below so many times the optimum of the first. A margin finds more: of
+# A start is given up where it promises nothing below so many times the optimum of the first. A margin finds more: of
 # heavy or long lifts the objective falls late.
 MARGIN = 1.2
 # Variations of the optima without a gain, for each try, after which there are no more: so many times the chance that
-# is left to find an optimum that is not known (``_unseen``), at most the second. Of 38 lifts variations lowered the
-# objective by over 1 % in 8 of 11 where that chance was 0.35 or more, in 5 of 27 where it was less; more gained little.
+# is left to find an optimum that is not known (``_unseen``), at most the second. Where it is small they gain little.
 IDLE, MOST_IDLE = 6.0, 2.0
 # Variations in all, for each try: where gain follows gain, more would take longer than all the rest.
 MOST_VARIED = 8
-# Share of the objective that scouts' KKT errors may reach: the iterations that are saved are a fifth.
+# Share of the objective that KKT errors may reach here: optima need only be compared.
 ROUGH = 1e-5
 
 
-def coarse_search(search: Search, found: InitialGuessSet, tries: int, most: int | None = None) -> list[Candidate]:
+def coarse_search(
+    session: Session, spline: RestToRestSpline, guesses: InitialGuessSet, tries: int, most: int | None = None
+) -> list[Candidate]:
     """Return the optima on a coarse mesh that may lead to the best one, the best first; none if none was found.
 
     Args:
-        search: on the mesh that was asked for.
-        found: where to start from.
+        session: hears of it.
+        spline: the mesh that was asked for.
+        guesses: where to start from.
         tries: starts to be tried.
         most: iterations of each start; None: as many as the solver takes.
     """
-    scenario, intervals = search.scenario, meshes_below(search.spline.intervals)[0]
+    options, intervals = session.scenario.solver, meshes_below(spline.intervals)[0]
     if intervals < FEWEST or not tries:
         return []
-    spline = search.spline.on(intervals)
-    problem = search.cache.problem(scenario, spline, search.progress)
-    starts = found.starts(problem, tries)
-    search.progress(f"trying {len(starts)} starts on {intervals} intervals")
+    coarse = spline.on(intervals)
+    problem = session.problem(coarse)
+    starts = guesses.starts(problem, tries)
+    session.progress(f"trying {len(starts)} starts on {intervals} intervals")
     try:
-        solvers: list[Solver] = [
-            search.cache.solver(problem, scenario, QUICKEST[0], search.progress, i, ROUGH)
-            for i in range(min(scenario.solver.workers, len(starts)))
-        ]
+        solvers = [session.solver(problem, BANDED, i, ROUGH) for i in range(min(options.workers, len(starts)))]
     except SolverError:  # an extension that is missing: the search goes on without
         return []
-    until = search.deadline
-    results = list(solve_all(solvers, starts, until, problem, MARGIN, most))
-    tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, until, problem))
-    optima, plain = _distinct(search, problem, spline, tried), len(tried)
+    deadline = session.deadline
+    results = list(solve_all(solvers, starts, deadline, problem, MARGIN, most))
+    tried = list(zip(starts, results, strict=True)) + list(follow_up(solvers[0], starts, results, deadline, problem))
+    optima, plain = _optima(session, problem, coarse, tried), len(tried)
     if optima:
-        search.progress(f"varying the best of {len(optima)} optima")
+        session.progress(f"varying the best of {len(optima)} optima")
         results = [candidate.result for candidate in optima]
         # A wider search, of more tries than the scenario's, is for lifts that nothing was found for: any will do.
-        share = min(tries, scenario.solver.tries)
+        share = min(tries, options.tries)
         idle, varied = min(IDLE * _unseen(tried), MOST_IDLE) * share, MOST_VARIED * share
-        tried += vary(solvers, problem, search.postures, results, idle, scenario.solver.seed, until, varied)
-        optima = _distinct(search, problem, spline, tried)
+        tried += vary(solvers, problem, session.postures, results, idle, options.seed, deadline, varied)
+        optima = _optima(session, problem, coarse, tried)
     near = [candidate for candidate in optima if candidate.result.objective <= PROMISING * optima[0].result.objective]
-    chosen = near[: scenario.solver.starts]
-    search.notes.append(
+    chosen = near[: options.starts]
+    session.notes.append(
         f"{plain} starts and {len(tried) - plain} variations on {intervals} intervals led to {len(optima)} optima; "
-        f"the best {len(chosen)} were taken to {search.spline.intervals}"
+        f"the best {len(chosen)} were taken to {spline.intervals}"
     )
     return chosen
 
 
-def _distinct(
-    search: Search, problem: Problem, spline: RestToRestSpline, tried: Sequence[tuple[InitialGuess, SolverResult]]
+def _optima(
+    session: Session, problem: Problem, spline: RestToRestSpline, tried: Sequence[tuple[InitialGuess, SolverResult]]
 ) -> list[Candidate]:
     """Return the optima found, the best first, each once."""
     mesh = f"{MESH}{spline.intervals}"
     return each_once(
         [
-            Candidate(search.scenario, problem, spline, f"{start.name}{mesh}", result)
+            Candidate(session.scenario, problem, spline, f"{start.name}{mesh}", result)
             for start, result in tried
             if result.converged
         ]

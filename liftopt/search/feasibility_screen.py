@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +9,12 @@ import numpy.typing as npt
 
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.search.inverse_kinematics import InverseKinematics
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
-from liftopt.solution.infeasibility_report import Obstacle
+from liftopt.solution.infeasibility_report import InfeasibilityReason
 
 Array = npt.NDArray[np.float64]
 REACHED = 1e-4  # [m]
@@ -32,7 +32,7 @@ PRECISION = 1.01
 NOTICEABLE = 0.01
 
 
-def too_fast(problem: Problem) -> Obstacle | None:
+def too_fast(problem: Problem) -> InfeasibilityReason | None:
     """Return how much longer the lift must last for the object's speed limit, or None if it lasts long enough."""
     task = problem.task
     # From one control point to the next a coordinate goes as far as the limit of that slope lets it, in all by a share
@@ -42,41 +42,41 @@ def too_fast(problem: Problem) -> Obstacle | None:
     shortest = float(np.nanmax(needed))
     if shortest <= task.duration:
         return None
-    which, held = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.object.name
+    which, lifted = OBJECT_COORDINATES[int(np.nanargmax(needed))], problem.team.object.name
     text = (
-        f"too fast: the {held} would exceed its speed limit along {which}; "
+        f"too fast: the {lifted} would exceed its speed limit along {which}; "
         f"the lift must last at least {shortest:.2f} s, not {task.duration:g} s"
     )
     beyond = shortest / task.duration - 1.0
-    return Obstacle("velocity", held, shortest - task.duration, "s", text, share=beyond)
+    return InfeasibilityReason("velocity", lifted, shortest - task.duration, "s", text, share=beyond)
 
 
-def screen(
-    problem: Problem, seed: int, deadline: float, solver: PostureSolver | None = None
-) -> tuple[list[Obstacle], list[Posture]]:
-    """Return what is in the way at the start and at the end, and the nearest posture of each end.
+def screen_ends(
+    problem: Problem, seed: int, deadline: Deadline, solver: PostureSolver | None = None
+) -> tuple[list[InfeasibilityReason], list[Posture]]:
+    """Return what is in the way of holding the object still at each end, and the nearest posture of each.
 
     Args:
         problem: the lift.
         seed: of the random seeds.
-        deadline: ``time.monotonic`` value past which the search stops.
+        deadline: past which the search stops.
         solver: of static postures of the problem's team, to be used again; None: one is made.
     """
     solver = solver or PostureSolver(problem.team, problem.task)
-    obstacles: list[Obstacle] = []
+    reasons: list[InfeasibilityReason] = []
     postures: list[Posture] = []
     for name, pose in (("start", problem.task.start), ("end", problem.task.end)):
-        obstacle, posture = _screen_end(problem, solver, name, pose, np.random.default_rng(seed), deadline)
+        reason, posture = _screen_end(problem, solver, name, pose, np.random.default_rng(seed), deadline)
         postures.append(posture)
-        if obstacle is not None:
+        if reason is not None:
             when = 0.0 if name == "start" else problem.task.duration
-            obstacles.append(replace(obstacle, time=when, static=True))
-    return obstacles, postures
+            reasons.append(replace(reason, time=when, static=True))
+    return reasons, postures
 
 
 def _screen_end(
-    problem: Problem, postures: PostureSolver, name: str, pose: Array, rng: np.random.Generator, deadline: float
-) -> tuple[Obstacle | None, Posture]:
+    problem: Problem, postures: PostureSolver, name: str, pose: Array, rng: np.random.Generator, deadline: Deadline
+) -> tuple[InfeasibilityReason | None, Posture]:
     kinematics = postures.kinematics
     seeds = np.array([seed_coordinates(problem, pose, rng if i else None) for i in range(SEEDS)])
     reach = kinematics.reach(pose, seeds, deadline, most=ITERATIONS)
@@ -88,7 +88,7 @@ def _screen_end(
     if reach.shortfall.min() < REACHED:
         reached = list(reach.coordinates[reach.shortfall < REACHED])
         return _strength(problem, postures, name, pose, reached, deadline) or (None, near)
-    if time.monotonic() > deadline:
+    if deadline.passed:
         return None, near
     again = np.vstack([reach.coordinates, seeds])
     beyond = kinematics.reach(pose, again, deadline, most=ITERATIONS, anywhere=True)
@@ -100,24 +100,24 @@ def _screen_end(
     who = problem.team.agents[int(np.argmax(gaps))].name
     text = f"out of reach at the {name} of the lift: the {who}'s grasp stays {gaps.max():.3f} m short"
     text += _range_of_motion(problem, kinematics, pose, again, deadline)
-    return Obstacle("closure", who, float(gaps.max()), "m", text), near
+    return InfeasibilityReason("closure", who, float(gaps.max()), "m", text), near
 
 
-def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> Obstacle:
+def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> InfeasibilityReason:
     if twisted.max() > outside.max():
         agent = problem.team.agents[int(np.argmax(twisted))]
         limit, lacking = agent.grasp.max_turn, float(twisted.max())
         amount = float(np.degrees(np.arccos(np.clip(np.cos(limit) - lacking, -1.0, 1.0)) - limit))
         text = f"held back at the {name} of the lift: the {agent.name}'s hand would have to turn "
         text += f"{amount:.0f} deg farther on the object than the {np.degrees(limit):.0f} deg allowed"
-        return Obstacle("grasp_turn", agent.name, amount, "deg", text)
+        return InfeasibilityReason("grasp_turn", agent.name, amount, "deg", text)
     who, amount = problem.team.agents[int(np.argmax(outside))].name, float(outside.max())
     text = f"held back at the {name} of the lift: the {who}'s grasp would lie {amount:.3f} m outside its half-space"
-    return Obstacle("keep_in", who, amount, "m", text)
+    return InfeasibilityReason("workspace", who, amount, "m", text)
 
 
 def _range_of_motion(
-    problem: Problem, kinematics: InverseKinematics, pose: Array, seeds: Array, deadline: float
+    problem: Problem, kinematics: InverseKinematics, pose: Array, seeds: Array, deadline: Deadline
 ) -> str:
     """Return which joints would reach if they moved farther than they can, and how much; nothing if none would."""
     reach = kinematics.reach(pose, seeds, deadline, most=ITERATIONS, any_angle=True)
@@ -135,11 +135,11 @@ def _range_of_motion(
 
 
 def _strength(
-    problem: Problem, postures: PostureSolver, name: str, pose: Array, seeds: list[Array], deadline: float
-) -> tuple[Obstacle | None, Posture] | None:
+    problem: Problem, postures: PostureSolver, name: str, pose: Array, seeds: list[Array], deadline: Deadline
+) -> tuple[InfeasibilityReason | None, Posture] | None:
     """Find by bisection how many times stronger agents and grasps must be to hold still there.
 
-    Returns the posture that holds, with an obstacle if that takes more than the limits; None if nothing helps.
+    Returns the posture that holds, with the reason why it is not allowed if it exceeds limits; None if nothing helps.
     """
     if posture := _hold(postures, pose, seeds[:NEAREST], deadline):
         return None, posture
@@ -153,14 +153,14 @@ def _strength(
     if strong > weak:
         if posture := _hold(postures, pose, near, deadline):
             return None, posture
-        while strong / weak > PRECISION and time.monotonic() < deadline:
+        while strong / weak > PRECISION and not deadline.passed:
             middle = (weak * strong) ** 0.5
             # What holds with more strength is the best seed for less.
             posture = _hold(_stronger(problem, middle), pose, [held.coordinates, *near], deadline)
             weak, strong, held = (weak, middle, posture) if posture else (middle, strong, held)
         if posture := _hold(postures, pose, [held.coordinates], deadline):
             return None, posture
-    if strong <= 1.0 or time.monotonic() > deadline:
+    if strong <= 1.0 or deadline.passed:
         return None, held
     # A squeeze relieves some joints: the limits that are exceeded belong together.
     exceeded = sorted((use for use in _uses(problem, held) if use[0] > 1.0), reverse=True)
@@ -176,10 +176,10 @@ def _strength(
     pairs = zip(shares, exceeded[:NAMED], strict=True)
     what = [f"{share:.2f} times {words[kind]} {whose}" for share, (_, kind, whose) in pairs]
     text = f"too weak at the {name} of the lift: holding still needs about {' and '.join(what)}"
-    return Obstacle(constraint, who, strong, "times the limit", text, share=strong - 1.0), held
+    return InfeasibilityReason(constraint, who, strong, "times the limit", text, share=strong - 1.0), held
 
 
-def _hold(postures: PostureSolver, pose: Array, seeds: list[Array], deadline: float) -> Posture | None:
+def _hold(postures: PostureSolver, pose: Array, seeds: list[Array], deadline: Deadline) -> Posture | None:
     """Return the first posture found that holds the object, or None if no seed leads to one."""
     return next(filter(None, postures.search(pose, seeds, deadline)), None)
 

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.elastic_mode import Elastic, Violation, elastic
+from liftopt.collocation.elastic_mode import ElasticMotion, Violation, solve_elastic
 from liftopt.collocation.problem import Problem
-from liftopt.solution.infeasibility_report import Obstacle
+from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.collocation.solvers.result import Multipliers, SolverResult
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.scenario.model import Scenario
+from liftopt.search.candidate import Candidate
+from liftopt.search.feasibility_screen import screen_ends, too_fast
+from liftopt.search.initial_guess import InitialGuess, blend
+from liftopt.search.postures import PostureSolver
+from liftopt.solution.infeasibility_report import InfeasibilityReason
 
 Array = npt.NDArray[np.float64]
-MOST = 5  # reasons that are told
+MOST_REASONS = 5
 # Starts, and iterations of IPOPT for all of them: what converges takes fewer than so many in all.
 TRIES, ITERATIONS = 3, 300
 
 
 @dataclass(frozen=True)
-class Finding:
+class LeastViolation:
     """The motion that breaks least.
 
     Attributes:
@@ -30,46 +37,78 @@ class Finding:
     """
 
     x: Array
-    reasons: tuple[Obstacle, ...]
+    reasons: tuple[InfeasibilityReason, ...]
     sure: bool
 
 
-def find(problem: Problem, starts: Sequence[Array], deadline: float) -> Finding | None:
+def find_least_violation(problem: Problem, starts: Sequence[Array], deadline: Deadline) -> LeastViolation | None:
     """Return the motion that breaks least, of those found from ``starts``; None if there was no time.
 
     Raises:
         SolverError: IPOPT cannot run.
     """
-    found: list[Elastic] = []
+    found: list[ElasticMotion] = []
     left = ITERATIONS
     for x in starts[:TRIES]:
-        if time.monotonic() > deadline:
+        if deadline.passed:
             break
-        found.append(elastic(problem, x, deadline, left))
+        found.append(solve_elastic(problem, x, deadline, left))
         left -= found[-1].iterations
         if found[-1].possible or left <= 0:
             break
     if not found:
         return None
     best = min(found, key=lambda motion: (not motion.converged, sum(v.price for v in motion.violations)))
-    return Finding(best.x, tuple(_named(problem, v) for v in best.violations[:MOST]), best.converged)
+    reasons = tuple(_in_words(problem, violation) for violation in best.violations[:MOST_REASONS])
+    return LeastViolation(best.x, reasons, best.converged)
 
 
-def _named(problem: Problem, violation: Violation) -> Obstacle:
-    """Return a violation as an obstacle, in words."""
+def nearest_motion(
+    problem: Problem, seed: int, deadline: Deadline, postures: PostureSolver
+) -> tuple[InitialGuess, tuple[InfeasibilityReason, ...]]:
+    """Return the motion between the nearest postures that can be had at the ends, and what is in the way.
+
+    Args:
+        problem: the lift.
+        seed: of the random seeds.
+        deadline: past which no more is tried.
+        postures: solver of static postures of its team.
+    """
+    reasons, (first, last) = screen_ends(problem, seed, deadline, postures)
+    if reason := too_fast(problem):
+        reasons.append(reason)
+    return InitialGuess("nearest postures", blend(problem, first, last)), tuple(reasons)
+
+
+def infeasible_candidate(
+    scenario: Scenario,
+    problem: Problem,
+    spline: RestToRestSpline,
+    start: InitialGuess,
+    reasons: Sequence[InfeasibilityReason],
+) -> Candidate:
+    """Return a motion that no solver improved, with why it is no solution."""
+    nothing = Multipliers(np.zeros(problem.layout.n_x), np.zeros(problem.constraints.linear.shape[0]))
+    result = SolverResult(start.x, nothing, np.nan, 0, False, "infeasible", 0.0, 0.0)
+    why = "; ".join(dict.fromkeys(reason.message for reason in reasons))
+    return Candidate(scenario, problem, spline, start.name, result, why)
+
+
+def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
+    """Return a violation as a reason, in words."""
     who, amount, at = violation.who, violation.amount, f"at {violation.time:.2f} s"
-    share, held = f"{100 * violation.share:.0f} %", problem.team.object.name
+    share, lifted = f"{100 * violation.share:.0f} %", problem.team.object.name
     words = {
-        "closure": f"the {who}'s grasp stays {amount:.3f} m off the {held} {at}",
-        "keep_in": f"the {who}'s grasp lies {amount:.3f} m outside its half-space {at}",
+        "closure": f"the {who}'s grasp stays {amount:.3f} m off the {lifted} {at}",
+        "workspace": f"the {who}'s grasp lies {amount:.3f} m outside its half-space {at}",
         "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
         "grasp_force": f"the {who}'s grasp needs {amount:.3g} N ({share}) more than its cap {at}",
         "grasp_moment": f"the {who}'s grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
-        "grasp_turn": f"the {who}'s hand turns {amount:.0f} deg farther on the {held} than it may {at}",
+        "grasp_turn": f"the {who}'s hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",
         "friction": f"flat hand: {who} it slides or lifts, {amount:.3g} N short of its friction {at}",
         "pressure": f"flat hand: {who} it tips or turns, {amount:.3g} Nm beyond its breadth {at}",
         "velocity": f"{who} has to be {amount:.2g} {violation.unit} ({share}) faster than its speed limit {at}",
     }
     beyond = 0.0 if violation.unit == "m" else violation.share
     text = words[violation.constraint]
-    return Obstacle(violation.constraint, who, amount, violation.unit, text, violation.time, share=beyond)
+    return InfeasibilityReason(violation.constraint, who, amount, violation.unit, text, violation.time, share=beyond)

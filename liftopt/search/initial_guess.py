@@ -1,14 +1,13 @@
 """Where the solver starts: pairs of static postures joined by a smooth motion, and the paper's naive guess.
 
-Random seeds spread over the ranges of motion find different arm configurations that hold the object at the start;
-each leads to one at the end, and that back to another at the start. Every agent's moves between them are ranked apart
-(``moves.py``). The first start joins the best move of each; the others each have another move of one agent, the agents
-taking turns. What they lead to tells which moves to combine (``recombined``).
+Random seeds spread over the ranges of motion. They find different arm configurations that hold the object at the start.
+Each leads to one at the end, and that back to another at the start. Every agent's moves between them are ranked apart
+(``moves.py``). The first guess joins the best move of each agent. Each of the others has another move of one agent; the
+agents take turns. What they lead to tells which moves to combine (``recombined``).
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -16,16 +15,16 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.search.moves import Move, blend_all, combinations, find_moves
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
 
 Array = npt.NDArray[np.float64]
 # Postures nearer than this in every joint [rad] lead to the same ones.
-SAME = 0.03
+SAME_POSTURE = 0.03
 # Seeds tried at once, at least, and rounds of them after which an end that no posture was found for is given up. There
-# are as many seeds as starts, for many starts need different postures. Of eight starts of each of 40 varied lifts the
-# best was as good with 12 seeds as with 16, and 2 % worse in the mean with 8.
+# are as many seeds as starts, for many starts need different postures. Fewer lead to worse optima (docs/tuning.md).
 SEEDS, ROUNDS = 12, 3
 NAIVE_FORCE = 10.0
 # A joint that is at a limit for this share of the time, to this [rad], is pressed against it; where it is turned to it
@@ -35,13 +34,13 @@ PRESSED_SHARE, PRESSED, MISSED = 0.2, 0.01, 0.6
 
 @dataclass(frozen=True)
 class InitialGuess:
-    """A start of the solver.
+    """Where a solver starts.
 
     Attributes:
         name: ``"naive"`` or ``"posture pair 1"``, ...
         x: unknowns of the problem it was made for.
         moves: which of its moves each agent makes; empty where that is not known.
-        agent: whose move it is there for; None: nobody's in particular.
+        agent: whose move it is meant to try; None: nobody's in particular.
     """
 
     name: str
@@ -87,7 +86,7 @@ def initial_guesses(
     problem: Problem,
     most: int,
     seed: int,
-    deadline: float,
+    deadline: Deadline,
     progress: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     seeds: int = 0,
@@ -99,21 +98,17 @@ def initial_guesses(
         problem: the lift.
         most: moves of one agent.
         seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
-        deadline: ``time.monotonic`` value past which the search stops.
+        deadline: past which the search stops.
         progress: hears of progress.
         postures: solver for the problem's team, to be used again; None: one is made.
         seeds: postures that are searched from, at least; fewer than moves or ``SEEDS`` are not.
         rounds: of seeds, after which an end without a posture is given up.
     """
     task, rng = problem.task, np.random.default_rng(seed)
-    if postures is None:
-        # Its kernels may have to be compiled, once: that is no part of the search.
-        began = time.monotonic()
-        postures = PostureSolver(problem.team, task, progress)
-        deadline += time.monotonic() - began
+    postures = postures or PostureSolver(problem.team, task, progress)
     count = max(SEEDS, most, seeds)
     for attempt in range(rounds):
-        if time.monotonic() > deadline:
+        if deadline.passed:
             break
         if progress:
             progress(f"postures at both ends, from {count} seeds" + (" more" if attempt else ""))
@@ -128,18 +123,18 @@ def posture_starts(
     problem: Problem,
     count: int,
     seed: int,
-    deadline: float,
+    deadline: Deadline,
     progress: Callable[[str], None] | None = None,
     postures: PostureSolver | None = None,
     rounds: int = ROUNDS,
 ) -> list[InitialGuess]:
-    """Return up to ``count`` starts from pairs of postures, the most promising first; see ``repertoire``."""
+    """Return up to ``count`` starts from pairs of postures, the most promising first; see ``initial_guesses``."""
     found = initial_guesses(problem, count, seed, deadline, progress, postures, rounds=rounds)
     return found.starts(problem, count) if found else []
 
 
 def _ends(
-    postures: PostureSolver, problem: Problem, seeds: list[Array], deadline: float
+    postures: PostureSolver, problem: Problem, seeds: list[Array], deadline: Deadline
 ) -> tuple[list[Posture], list[Posture]]:
     """Return postures at the start, also those that lead back from the end, and at the end."""
     task = problem.task
@@ -147,10 +142,10 @@ def _ends(
     def found(pose: Array, seeds: list[Array]) -> list[Posture]:
         return [posture.rounded() for posture in postures.search(pose, seeds, deadline) if posture]
 
-    first = distinct(found(task.start, seeds), SAME)
-    last = distinct(found(task.end, [p.coordinates for p in first]), SAME)
+    first = distinct(found(task.start, seeds), SAME_POSTURE)
+    last = distinct(found(task.end, [p.coordinates for p in first]), SAME_POSTURE)
     again = found(task.start, [p.coordinates for p in last])
-    return distinct([*first, *again], SAME), last
+    return distinct([*first, *again], SAME_POSTURE), last
 
 
 def _together(problem: Problem, own: Sequence[Posture]) -> Posture:
@@ -195,7 +190,7 @@ def recombined(
     return InitialGuess("best moves together", x, chosen)
 
 
-def turned(problem: Problem, x: Array) -> InitialGuess | None:
+def turned_back(problem: Problem, x: Array) -> InitialGuess | None:
     """Return an optimum with the joints that press against a limit a full turn back; None where none can do that.
 
     At the other end of its range such a joint has the same posture, or nearly, and room to move on.

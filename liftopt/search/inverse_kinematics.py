@@ -2,13 +2,12 @@
 
 Levenberg's and Marquardt's method on the grasp gaps, in its dual form: the steps have the least norm, so a posture
 stays near its seed, and the systems to solve are as small as the number of gaps. Joints at a limit that a step
-would cross are held for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the
+would cross are kept there for that step. All is done by NumPy's own loops: a library of linear algebra rounds as the
 processor has it, and its threads take longer to wake than such small systems to solve.
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy.typing as npt
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 
 Array = npt.NDArray[np.float64]
 CLOSED = 1e-6  # [m]
@@ -63,7 +63,7 @@ class InverseKinematics:
         blocks = problem.constraints.blocks
         names = [agent.name for agent in problem.team.agents]
         closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "closure"]
-        workspace = [b for name in ("keep_in", "grasp_turn") for b in blocks if b.name == name]
+        workspace = [b for name in ("workspace", "grasp_turn") for b in blocks if b.name == name]
         self._kept = [names.index(b.who) + len(names) * (b.name == "grasp_turn") for b in workspace]
         self._offset = np.array([float(b.lower[0]) for b in workspace])
         self._n_closure = FORCE_SIZE * len(closure)
@@ -74,14 +74,21 @@ class InverseKinematics:
         self._anywhere = tuple(bound[self._columns] for bound in free)
 
     def reach(
-        self, pose: Array, seeds: Array, deadline: float, *, most: int, any_angle: bool = False, anywhere: bool = False
+        self,
+        pose: Array,
+        seeds: Array,
+        deadline: Deadline,
+        *,
+        most: int,
+        any_angle: bool = False,
+        anywhere: bool = False,
     ) -> Reach:
         """Bring all grasps as near as possible.
 
         Args:
             pose: of the object, (6,) or one for each seed (B, 6); NaN leaves a coordinate free within the task's range.
             seeds: (B, n) coordinates to start from.
-            deadline: ``time.monotonic`` value past which it returns what it has.
+            deadline: past which it returns what it has.
             most: iterations.
             any_angle: leave out the joints' ranges of motion.
             anywhere: leave out the half-spaces and the limits on the hands' angles.
@@ -93,7 +100,7 @@ class InverseKinematics:
         todo = np.arange(len(x))
         for _ in range(most):
             todo = todo[(np.abs(left[todo]).max(axis=1) > CLOSED / 10) & (damping[todo] < STUCK)]
-            if not len(todo) or time.monotonic() > deadline:
+            if not len(todo) or deadline.passed:
                 break
             trial = x[todo]
             here = trial[:, self._columns]
@@ -149,10 +156,10 @@ def _least_norm_step(slopes: Array, left: Array, damping: Array, below: Array, a
     off = np.where((slopes == 0).all(axis=2), 1.0, damping[:, None])
     step = np.zeros_like(below)
     for _ in range(2):
-        held = slopes * free[:, None, :]
-        system = np.einsum("bij,bkj->bik", held, slopes)
+        movable = slopes * free[:, None, :]
+        system = np.einsum("bij,bkj->bik", movable, slopes)
         system[:, range(size), range(size)] += off
-        step = -np.einsum("bij,bi->bj", held, _solved_each(system, left))
+        step = -np.einsum("bij,bi->bj", movable, _solved_each(system, left))
         crossing = (free > 0) & (((below <= 0) & (step < 0)) | ((above <= 0) & (step > 0)))
         if not crossing.any():
             break

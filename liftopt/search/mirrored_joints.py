@@ -1,4 +1,4 @@
-"""Mirrors: a motion with one joint bent the other way, as an elbow or a wrist may be, that carries the object alike."""
+"""Mirrored joints: a motion with one joint bent the other way, as an elbow may be, that carries the object alike."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ STRAIGHT, PARALLEL = 0.15, 1e-6
 HALF_TURN, WHOLE_TURN = (np.pi, -np.pi), (0.0, 2 * np.pi, -2 * np.pi)
 
 
-def mirrored(problem: Problem, x: Array) -> Iterator[InitialGuess]:
-    """Yield an optimum with one joint bent the other way and its neighbours half a turn on, where their ranges allow.
+def mirrored_joints(problem: Problem, x: Array) -> Iterator[InitialGuess]:
+    """Yield a motion with one joint bent the other way and its neighbours half a turn on, where their ranges allow.
 
     That leaves the orientation of what they carry as it is, and its place but for the offsets between the axes: another
     way to hold much the same, as of an elbow or a wrist.

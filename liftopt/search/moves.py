@@ -1,8 +1,7 @@
 """Moves: what each agent may do between the postures at both ends, ranked for each agent apart.
 
-Who holds one object hardly feels how the other gets there: of 200 starts of each of 40 varied lifts, the best optimum
-was nearly always the best move of one agent beside the best of the other. So moves are ranked and tried by agent, and
-a few of each stand for all their combinations.
+Who holds one object hardly feels how the others get there: the best optimum is nearly always the best move of each
+agent (docs/tuning.md). So moves are ranked and tried by agent, and a few of each stand for all their combinations.
 """
 
 from __future__ import annotations
@@ -24,15 +23,15 @@ from liftopt.search.postures import Posture, PostureSolver
 Array = npt.NDArray[np.float64]
 # Peak speed of the quintic blend over its mean speed.
 QUINTIC_PEAK = 1.875
-# Holding still at both ends for the whole time, beside the objective of the blend between them: of the weights tried
-# (0.25, 1, 3, 10) the one with the best optima.
+# Weight of holding still at both ends for the whole time, beside the objective of the blend between them: what costs
+# much to hold is no good end, however cheap the way there.
 STATIC_WEIGHT = 1.0
 TOO_FAST_WEIGHT = 1e3
 # A blend along which a hand turns too far on the object joins arm configurations that seldom meet.
 TURNED_WEIGHT = 1e4
 # Moves whose links all begin and end nearer to each other than this [m] mostly lead to the same optimum. Angles would
 # not tell: turning the last joint about its own axis moves nothing.
-SAME = 0.06
+SAME_MOVE = 0.06
 # What an agent's move does to the others counts by what it takes them to hold the object where the move has it at both
 # ends: at best, in one of the postures found, which needs so many times more for each distance [m] from there. Where
 # the object may stand anywhere, one agent's best place is often out of the other's comfort.
@@ -74,13 +73,13 @@ def find_moves(
     pairs = np.array(list(product(range(len(first)), range(len(last)))))
     blended, turned = _blended(problem, [(first[i], last[j]) for i, j in pairs])
     still = Batch(postures.problem)
-    held = [
+    holding = [
         still.terms(np.array([postures.problem.pack(p.coordinates[None], p.force[None]) for p in ends]))
         for ends in (first, last)
     ]
-    promise = blended + STATIC_WEIGHT * (held[0][:, pairs[:, 0]] + held[1][:, pairs[:, 1]])
+    promise = blended + STATIC_WEIGHT * (holding[0][:, pairs[:, 0]] + holding[1][:, pairs[:, 1]])
     places = [np.array([p.coordinates[-OBJECT_SIZE : -OBJECT_SIZE + 3] for p in ends]) for ends in (first, last)]
-    there = [_least_there(cost, place) for cost, place in zip(held, places, strict=True)]
+    there = [_least_there(cost, place) for cost, place in zip(holding, places, strict=True)]
     needed = there[0][:, pairs[:, 0]] + there[1][:, pairs[:, 1]]
     found = []
     for i, agent in enumerate(problem.team.agents):
@@ -184,11 +183,11 @@ def apart(agent: Agent, q: Array) -> Array:
 
 
 def _different(pairs: npt.NDArray[np.int64], rank: Array, between: list[Array], most: int) -> list[int]:
-    """Return which moves rank first of which no two are the same; ``between``: how far the postures are apart."""
+    """Return the moves that rank first, no two of them the same; ``between``: how far the postures are apart."""
 
     def differs(n: int, kept: list[int]) -> bool:
         (i, j), (first, last) = pairs[n], pairs[kept].T
-        return bool((np.maximum(between[0][i, first], between[1][j, last]) > SAME).all())
+        return bool((np.maximum(between[0][i, first], between[1][j, last]) > SAME_MOVE).all())
 
     return keep_different(np.argsort(rank, kind="stable"), differs, most)
 
@@ -205,5 +204,5 @@ def keep_different(order: Iterable[int], differs: Callable[[int, list[int]], boo
 
 
 def further(between: Array, same: float) -> Callable[[int, list[int]], bool]:
-    """Return whether one is further than ``same`` from all others, by how far each two are apart, (B, B)."""
+    """Return the test whether one is further than ``same`` from all others; ``between`` (B, B): distances."""
     return lambda n, others: bool((between[n, others] > same).all())

@@ -1,4 +1,4 @@
-"""Many starts of one problem, one after the other or several at a time, and those that come of their results."""
+"""Many starts of one problem, one after the other or several at a time, and starts that their results suggest."""
 
 from __future__ import annotations
 
@@ -6,32 +6,33 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.parallel_map import parallel_map
 from liftopt.collocation.solvers.result import Solver, SolverResult
-from liftopt.search.initial_guess import InitialGuess, recombined, turned
+from liftopt.search.initial_guess import InitialGuess, recombined, turned_back
 from liftopt.search.postures import rounded
 
 
 def solve_all(
     solvers: Sequence[Solver],
     starts: Sequence[InitialGuess],
-    deadline: float,
+    deadline: Deadline,
     problem: Problem | None = None,
     margin: float = 1.0,
     most: int | None = None,
 ) -> Iterator[SolverResult]:
     """Solve from every start; yield the results in the order of the starts, whatever the number of solvers.
 
-    What the first leads to, which should be the most promising, is the rival of the others: these may be given up. That
-    of whichever was best so far would save 1 % more iterations, but depend on how many solve at a time. A start that
-    joins no known moves, the naive one, has no rival: far from feasible for long, its objective tells nothing.
+    The first start should be the most promising one. Its result is the incumbent of the others: they may be given up
+    for it. The best result so far would depend on how many solve at a time. A start that joins no known moves, the
+    naive one, has no incumbent: it is far from feasible for long, and its objective tells nothing.
 
     Args:
         solvers: one for each thread; with several they must let go of Python's lock at work.
         starts: where to start.
-        deadline: ``time.monotonic`` value past which solvers stop.
+        deadline: past which solvers stop.
         problem: what is solved; None: what each solver was built for.
-        margin: how many times the rival's objective is still of interest.
+        margin: how many times the incumbent's objective is still of interest.
         most: iterations of each; None: as many as its solver takes.
 
     Raises:
@@ -41,23 +42,23 @@ def solve_all(
     (leader,) = solve_each(solvers[:1], [(first, None)], deadline, problem, most)
     yield leader
     incumbent = replace(leader, objective=margin * leader.objective)
-    rivalled = [(start, incumbent if start.moves else None) for start in others]
-    yield from solve_each(solvers, rivalled, deadline, problem, most)
+    to_beat = [(start, incumbent if start.moves else None) for start in others]
+    yield from solve_each(solvers, to_beat, deadline, problem, most)
 
 
 def solve_each(
     solvers: Sequence[Solver],
     starts: Sequence[tuple[InitialGuess, SolverResult | None]],
-    deadline: float,
+    deadline: Deadline,
     problem: Problem | None = None,
     most: int | None = None,
 ) -> Iterator[SolverResult]:
-    """Solve from every start, each with the rival it has, if any; yield the results in their order.
+    """Solve from every start, each with its own incumbent, if any; yield the results in their order.
 
     Args:
         solvers: one for each thread, as for ``solve_all``.
-        starts: where to start, and what is to be beaten.
-        deadline: ``time.monotonic`` value past which solvers stop.
+        starts: where to start, and the result that is to be beaten.
+        deadline: past which solvers stop.
         problem: what is solved; None: what each solver was built for.
         most: iterations of each; None: as many as its solver takes.
 
@@ -75,18 +76,22 @@ def solve_each(
 
 
 def follow_up(
-    solver: Solver, starts: Sequence[InitialGuess], results: Sequence[SolverResult], deadline: float, problem: Problem
+    solver: Solver,
+    starts: Sequence[InitialGuess],
+    results: Sequence[SolverResult],
+    deadline: Deadline,
+    problem: Problem,
 ) -> Iterator[tuple[InitialGuess, SolverResult]]:
-    """Solve from the starts that come of others' results, and yield each with its result.
+    """Solve from starts that the results of others suggest; yield each with its result.
 
-    First from the best moves of all agents together, then from the best optimum with joints turned back that press
-    against a limit. The best optimum so far is the rival.
+    First from the best moves of all agents together, then from the best optimum with those joints turned back that
+    press against a limit. The best optimum so far is the incumbent.
 
     Args:
         solver: for the problem.
         starts: what was solved from.
         results: where each of them led.
-        deadline: ``time.monotonic`` value past which solvers stop.
+        deadline: past which solvers stop.
         problem: what is solved.
     """
 
@@ -94,7 +99,7 @@ def follow_up(
         return recombined(problem, starts, results)
 
     def back(best: SolverResult) -> InitialGuess | None:
-        return turned(problem, best.x)
+        return turned_back(problem, best.x)
 
     optima = [result for result in results if result.converged]
     for make in (together, back):

@@ -6,7 +6,6 @@ solve is spent on it. The others go to the banded solver, on the equations of th
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -17,6 +16,7 @@ import pinocchio as pin
 from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.parallel_map import parallel_map
 from liftopt.collocation.solvers.result import Solver
@@ -35,7 +35,7 @@ TOLERANCE = 1e-7
 # Digits after the point of what a solver starts from. Others are rounded differently by other processors, and from
 # there on every step makes them differ more.
 DIGITS = 4
-# Postures are compared, not kept: with these 24 iterations instead of 38, and 98 % of the seeds converge, not 93 %.
+# Postures are compared, not kept: with these more seeds converge, in fewer iterations (docs/tuning.md).
 SCALING, ROUGH = 0.01, 1e-4
 
 
@@ -76,7 +76,7 @@ class PostureSolver:
             task: its limits and weights; poses are given to ``solve``.
             progress: hears of it when kernels must be compiled first.
             like: another one, whose solvers are taken if they fit.
-            workers: postures held at a time.
+            workers: postures solved at a time.
         """
         self.problem: Problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)
         self.kinematics = InverseKinematics(self.problem)
@@ -91,12 +91,12 @@ class PostureSolver:
         except SolverError:  # IPOPT's linear solver takes one solve at a time
             self._solvers = self._solvers or [Ipopt(self.problem, IpoptOptions(TOLERANCE, MAX_ITERATIONS))]
 
-    def solve(self, pose: Array, seed: Array, deadline: float) -> Posture | None:
+    def solve(self, pose: Array, seed: Array, deadline: Deadline) -> Posture | None:
         """Return the posture found from ``seed`` (coordinates), or None; NaN in ``pose`` (6,) leaves that free."""
         return next(self.search(pose, [seed], deadline))
 
-    def search(self, pose: Array, seeds: Sequence[Array], deadline: float) -> Iterator[Posture | None]:
-        """Yield what is found from each seed: all are brought to the object at once, and held each by itself."""
+    def search(self, pose: Array, seeds: Sequence[Array], deadline: Deadline) -> Iterator[Posture | None]:
+        """Yield what is found from each seed: all are brought to the object at once, and then solved one by one."""
         if not seeds:
             return iter(())
         reach = self.kinematics.reach(pose, np.array(seeds), deadline, most=CLOSING_ITERATIONS)
@@ -113,9 +113,9 @@ class PostureSolver:
         )
 
 
-def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: float) -> Posture | None:
+def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: Deadline) -> Posture | None:
     """Return the static posture found from coordinates that close on the object; None if there is none in time."""
-    if time.monotonic() > deadline:
+    if deadline.passed:
         return None
     model = problem.team.object.model
     weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
@@ -160,13 +160,13 @@ def scattered(agent: Agent, rng: np.random.Generator) -> Array:
 
 def _place_in_hand(team: Team, which: int, q: Array) -> Array:
     """Return where the object's centre (3,) is if it is level and an agent with posture ``q`` holds it, world [m]."""
-    agent, held = team.agents[which], team.object.model
+    agent, lifted = team.agents[which], team.object.model
     model = agent.reduced()
     data = model.createData()
     pin.framesForwardKinematics(model, data, q)
     p_world_hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
     return np.asarray(
-        p_world_hand - held.frames[held.getFrameId(team.object.grasp_frames[which])].placement.translation
+        p_world_hand - lifted.frames[lifted.getFrameId(team.object.grasp_frames[which])].placement.translation
     )
 
 

@@ -1,31 +1,31 @@
 """Variations: optima changed in ways that no solver takes by itself, until nothing better comes of it.
 
 The best optimum is varied first, a few times, then the next best or the best again, as in a best-first search. Each
-variation changes much of one agent's motion and leaves the rest: a joint bent the other way (``mirrors.py``), another
-way along the same path (``other_ways.py``), a detour (``detours.py``). Of widely varied lifts all three lead to a
-better optimum about as often for each iteration of the solver: once in a thousand.
+variation changes much of one agent's motion and leaves the rest: a joint bent the other way (``mirrored_joints.py``),
+another posture along the same path (``alternative_paths.py``), a detour by way of a posture (``via_postures.py``). All
+three kinds pay about equally (docs/tuning.md), so they take turns.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import Solver, SolverResult
-from liftopt.search.alternative_paths import other_ways
+from liftopt.search.alternative_paths import alternative_paths
 from liftopt.search.initial_guess import InitialGuess
-from liftopt.search.mesh_refinement import same_optimum
-from liftopt.search.mirrored_joints import mirrored
+from liftopt.search.mirrored_joints import mirrored_joints
 from liftopt.search.multistart import solve_each
+from liftopt.search.optima import same_optimum
 from liftopt.search.postures import PostureSolver, rounded
-from liftopt.search.via_postures import detours, rests
+from liftopt.search.via_postures import low_cost_postures, via_postures
 
 # Variations of one optimum that are solved before the next is chosen. All have the best optimum known before as their
-# rival: what comes of them does not depend on how many are solved at a time.
+# incumbent: what comes of them does not depend on how many are solved at a time.
 TURN = 8
 # An optimum is chosen as if it were so much worse, as a share, for each turn it had; none further above the best.
 WEARY, NEAR = 0.05, 1.2
@@ -54,10 +54,10 @@ def vary(
     optima: Sequence[SolverResult],
     idle: float,
     seed: int,
-    deadline: float,
+    deadline: Deadline,
     most: float = np.inf,
 ) -> Iterator[tuple[InitialGuess, SolverResult]]:
-    """Solve from variations of optima and of what comes of them; yield each with its result.
+    """Solve from variations of optima, and of the optima that they lead to; yield each with its result.
 
     Args:
         solvers: for the problem, one for each thread.
@@ -66,25 +66,25 @@ def vary(
         optima: what is varied, at least one.
         idle: variations without a gain after which it ends.
         seed: of what is random.
-        deadline: ``time.monotonic`` value past which no more is tried.
+        deadline: past which no more is tried.
         most: variations after which it ends in any case; the turn that is begun is ended.
     """
     if not idle:
         return
     rng = np.random.default_rng(seed)
-    by = rests(problem, postures, rng, deadline)
+    by = low_cost_postures(problem, postures, rng, deadline)
 
     def varied(result: SolverResult) -> _Varied:
         x, kinematics = rounded(result.x), postures.kinematics
         kinds: tuple[Callable[[], Iterable[InitialGuess]], ...] = (
-            lambda: mirrored(problem, x),
-            lambda: detours(problem, kinematics, x, by, deadline),
-            lambda: _again_and_again(lambda: other_ways(problem, kinematics, x, rng, deadline)),
+            lambda: mirrored_joints(problem, x),
+            lambda: via_postures(problem, kinematics, x, by, deadline),
+            lambda: _again_and_again(lambda: alternative_paths(problem, kinematics, x, rng, deadline)),
         )
         return _Varied(result, _in_turns(kinds))
 
     known, best, since, solved = [varied(optimum) for optimum in optima], min(optima, key=_objective), 0, 0
-    while since < idle and solved < most and time.monotonic() < deadline:
+    while since < idle and solved < most and not deadline.passed:
         highest = NEAR * best.objective
         ready = [entry for entry in known if entry.result.objective <= highest and not entry.exhausted]
         if not ready:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Obstacle:
+class InfeasibilityReason:
     """What is in the way.
 
     Attributes:

@@ -14,7 +14,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Verification
 from liftopt.solution.finding import Assessment
-from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
+from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 
 Array = npt.NDArray[np.float64]
 SOLVED = "solved"
@@ -50,7 +50,7 @@ class Solution:
         time: (K,) knots [s].
         agents: trajectories at the knots, in the scenario's order.
         object: the object's trajectory at the knots.
-        urdfs: file name -> text of the very models solved.
+        urdfs: text of the very models solved, by the name of the agent or the object.
         objective: weighted sum of the terms.
         objective_terms, objective_weights: unweighted integrals and their weights by name.
         iterations: of the kept start.
@@ -83,7 +83,7 @@ class Solution:
     verification: Verification
     notes: tuple[str, ...] = ()
     accuracy: Accuracy | None = None
-    reasons: tuple[Obstacle, ...] = ()
+    reasons: tuple[InfeasibilityReason, ...] = ()
     suggested_changes: tuple[SuggestedChange, ...] = ()
     assessment: Assessment = field(default_factory=Assessment)
 
@@ -123,10 +123,10 @@ class Solution:
 
     @property
     def ground_reaction_force(self) -> Array:
-        """(K, 3) force of the ground on the human, world axes [N]."""
-        return self.agents[0].ground_force
+        """(K, 3) force of the ground on the first person, world axes [N]; of anybody: ``ground_force`` of the agent."""
+        return self.persons[0].ground_force
 
     @property
     def ground_reaction_moment(self) -> Array:
-        """(K, 3) moment of the ground on the human at the foot origin, world axes [Nm]."""
-        return self.agents[0].ground_moment
+        """(K, 3) moment of the ground on the first person at the foot origin, world axes [Nm]."""
+        return self.persons[0].ground_moment

@@ -10,13 +10,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.scenario.agents import Person
 from liftopt.solution.interpolation import between_knots
-from liftopt.storage.result_folder import FILES
 
 if TYPE_CHECKING:
     from liftopt.multibody.trajectory import AgentTrajectory
@@ -50,10 +50,11 @@ SAWYER_JOINTS = {
     "Q6": "right_j5",
     "Q7": "right_j6",
 }
-TERM_UNITS = {"human": "N^2 m^2 s", "robot": "N^2 m^2 s", "acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
+AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective
+TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
 
 
-def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
+def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[str] = ()) -> dict[str, Any]:
     """Return the figures that sum up a solution; every number in it is finite or None.
 
     Peaks are taken between the knots too; of what is no solution, at the knots.
@@ -61,6 +62,7 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
     Args:
         solution: solved or not.
         out: folder that it was written to, if any.
+        files: that were written there, by their paths within it.
     """
     solved = bool(solution.solved)
     fine = between_knots(solution) if solved else solution
@@ -74,13 +76,13 @@ def summary_dict(solution: Solution, out: Path | None = None) -> dict[str, Any]:
         "remedies": [asdict(change) for change in solution.suggested_changes],
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
-        "files": [] if out is None else [str(out / name) for name in FILES],
+        "files": [] if out is None else [str(out / name) for name in files],
         "scenario": solution.scenario.to_dict(),
         "joints": {agent.name: _joints(fine, agent) for agent in fine.agents},
         "load_share": load_share(solution),
         "grasp_force": _grasp_force(fine),
         "grasp_moment": _grasp_moment(fine),
-        "ground_reaction": _ground_reaction(fine),
+        **_ground_reactions(fine),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),
@@ -141,17 +143,17 @@ def squeeze(agents: Sequence[AgentTrajectory]) -> Array:
     return np.asarray(0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line))
 
 
-def joint_meaning(agent: str, robot_model: str, joint: str) -> str:
-    """Return what a joint is to its user: anatomy for the human, the manufacturer's name for the robot."""
-    if agent == "human":
+def joint_meaning(kind: str, robot_model: str, joint: str) -> str:
+    """Return what a joint is to its user: anatomy for a person, the manufacturer's name for a robot."""
+    if kind == "person":
         return HUMAN_JOINTS.get(joint, "")
-    return SAWYER_JOINTS.get(joint, "") if (agent, robot_model) == ("robot", "sawyer") else ""
+    return SAWYER_JOINTS.get(joint, "") if robot_model == "sawyer" else ""
 
 
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
-    share = limit_share(agent)
+    share, who = limit_share(agent), solution.scenario.agents[agent.name]
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
@@ -160,7 +162,7 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
         rows.append(
             {
                 "joint": joint,
-                "meaning": joint_meaning(agent.name, solution.scenario.first("robot").model, joint),
+                "meaning": joint_meaning(agent.kind, getattr(who, "model", ""), joint),
                 "peak_torque_Nm": _number(tau[at, column]),
                 "peak_torque_at_s": _number(solution.time[at]),
                 "share_of_limit": _number(share[at, column]),
@@ -192,10 +194,18 @@ def _grasp_moment(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _ground_reaction(solution: Solution) -> dict[str, Any]:
-    force, moment = solution.ground_reaction_force, solution.ground_reaction_moment
+def _ground_reactions(solution: Solution) -> dict[str, Any]:
+    """Return what the ground does to every person; as in solution.nc, the first one's without a name in front."""
+    return {
+        f"{person.name}_ground_reaction" if k else "ground_reaction": _ground_reaction(solution, person)
+        for k, person in enumerate(solution.persons)
+    }
+
+
+def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, Any]:
+    force, moment = person.ground_force, person.ground_moment
     vertical = _peak(force[:, 2], solution.time, "N")
-    weight = solution.scenario.first("person").mass * GRAVITY
+    weight = cast(Person, solution.scenario.agents[person.name]).mass * GRAVITY
     return {
         "vertical": vertical,
         "vertical_over_body_weight": None if vertical["peak_N"] is None else vertical["peak_N"] / weight,
@@ -208,12 +218,12 @@ def _ground_reaction(solution: Solution) -> dict[str, Any]:
 
 
 def _objective(solution: Solution) -> dict[str, Any]:
-    terms = {}
+    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), AGENT_UNIT) | TERM_UNITS
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {
             "integral": _number(integral),
-            "unit": TERM_UNITS.get(name, ""),
+            "unit": units.get(name, ""),
             "weight": _number(weight),
             "weighted": _number(weight * integral),
         }

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.bounded_read import read_regular
-from liftopt.files.checksum import is_sealed
+from liftopt.files.checksum import has_checksum
 from liftopt.storage.netcdf_sandbox import Contents, contents, unpacked
 
 LARGEST_FILE = 50_000_000  # bytes; a lift on 400 intervals has some 300 kB
@@ -21,8 +21,8 @@ PATIENCE = 20.0  # seconds; reading takes a tenth of one
 def read_netcdf(path: Path) -> Contents:
     """Return the numbers and attributes of a NetCDF-4 file.
 
-    As liftopt wrote it, which its seal tells, it is read here. If it is not, because another program wrote it or it is
-    damaged, a process of its own reads it, which may end or last without harm.
+    As liftopt wrote it, which its checksum tells, it is read here. If it is not, because another program wrote it or it
+    is damaged, a process of its own reads it, which may end or last without harm.
 
     Raises:
         FileNotFoundError: there is none.
@@ -31,7 +31,7 @@ def read_netcdf(path: Path) -> Contents:
     image, why = read_regular(path, LARGEST_FILE, "no result of liftopt is that large"), "it is no HDF5 file"
     if image.startswith(SIGNATURE):
         try:
-            return contents(image) if is_sealed(image) else _apart(image)
+            return contents(image) if has_checksum(image) else _apart(image)
         except (OSError, ValueError, KeyError, RuntimeError, TypeError, MemoryError) as error:
             why = " ".join(str(error).split()) or type(error).__name__
     raise InputError(str(path), NO_VALUE, f"cannot be read as NetCDF-4: {why}")

@@ -16,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 LARGEST_ARRAY = 64_000_000  # bytes; the largest variable of a lift on 400 intervals has 42 kB
-LARGEST_ATTRIBUTE = 10_000_000  # bytes or characters
+LARGEST_ATTRIBUTE = 5_000_000  # bytes or characters; the robot's model has 28 000
+MOST_TEXT = 20_000_000  # characters of all attributes
 MOST_NAMES = 1_000
 MOST_MEMORY = 4_000_000_000  # bytes of addresses, for the process of its own
 SCALAR_SIZE = 1
@@ -43,7 +44,7 @@ def contents(image: bytes) -> Contents:
         names = [name for name in file if file.id.links.get_info(name.encode()).type == h5py.h5l.TYPE_HARD]
         found = {name: file[name] for name in names}
         data = {name: _array(name, item) for name, item in found.items() if _is_numbers(item)}
-        return Contents(data, {name: _attribute(file.attrs, name) for name in file.attrs})
+        return Contents(data, _attributes(file.attrs))
 
 
 def _is_numbers(item: Any) -> bool:
@@ -65,6 +66,17 @@ def _array(name: str, dataset: Any) -> npt.NDArray[np.float64]:
     if dataset.nbytes > LARGEST_ARRAY:
         raise ValueError(f"{name} has shape {dataset.shape}, which is more than {LARGEST_ARRAY} bytes")
     return np.asarray(dataset[...], dtype=float)
+
+
+def _attributes(given: Any) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    room = MOST_TEXT
+    for name in given:
+        found[name] = _attribute(given, name)
+        room -= len(found[name]) if isinstance(found[name], str) else 0
+        if room < 0:  # many names can stand for one text
+            raise ValueError(f"attributes of more than {MOST_TEXT} characters")
+    return found
 
 
 def _attribute(attributes: Any, name: str) -> Any:

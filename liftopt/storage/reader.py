@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -16,15 +17,16 @@ from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.likeness import difference
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
-from liftopt.scenario.model import Scenario, load_scenario
-from liftopt.scenario.urdf_files import urdf_files
+from liftopt.scenario.model import Scenario
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import Solution
 from liftopt.storage.netcdf_file import read_netcdf
+from liftopt.storage.older_result import urdfs_beside
 from liftopt.storage.record import read_assessment, read_record
-from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, locked, standing_result
+from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
 from liftopt.storage.result_path import no_result, result_file
-from liftopt.storage.urdf_check import read_model
+from liftopt.storage.solved_scenario import scenario_of
+from liftopt.storage.urdf_check import check_urdf
 
 Array = npt.NDArray[np.float64]
 MOST_KNOTS = 10_000
@@ -35,11 +37,12 @@ SAME_TIME = 1e-6  # of the duration
 def load_result(path: str | Path) -> Solution:
     """Return the solution in a result folder; its ``solution.nc`` and its ``scenario.toml`` stand for it too.
 
-    Trajectories come from solution.nc, the models' limits from scenario.toml beside it. Nothing is written, and the
-    files are taken for what anybody may have made of them; see ``netcdf_file`` and ``model_file``.
+    All of it comes from solution.nc; of results of earlier versions, scenario and models come from the files beside.
+    Nothing is written, and the file is taken for what anybody may have made of it; see ``netcdf_file`` and
+    ``urdf_check``.
 
     Raises:
-        InputError: a file is missing, is no result of liftopt, is damaged, or is a model of another robot or person
+        InputError: a file is missing, is no result of liftopt, is damaged, or holds a model of another robot or person
             than the scenario's; it says which and why.
     """
     path = Path(path)
@@ -47,38 +50,45 @@ def load_result(path: str | Path) -> Solution:
     with suppress(OSError, ValueError):  # too long a name, a NUL: reading it says so
         if file.parent.is_file():
             raise no_result(path)
-    with locked(file.parent, to_write=False):
-        folder = standing_result(file.parent) if file.name == NETCDF else file.parent
-        try:
-            data, attributes = read_netcdf(folder / file.name)
-        except FileNotFoundError:
-            raise no_result(path) from None
-        if not (folder / SCENARIO).exists():
-            raise InputError(str(folder / SCENARIO), NO_VALUE, "no such file; a result has one beside its solution.nc")
-        scenario = load_scenario(folder / SCENARIO)
-        urdfs = {name: read_model(folder / MODELS / name) for name in urdf_files(scenario).values()}
+    try:
+        data, attributes = read_netcdf(file)
+    except FileNotFoundError:
+        raise no_result(path) from None
+    scenario = scenario_of(file, attributes)
+    built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario), object_of(scenario))
+    urdfs = _urdfs(file, attributes, scenario)
     try:
         agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
-        _check_models(scenario, agents, held, folder / MODELS)
+        _check_models(file, built, (*agents, held))
         return _solution(scenario, urdfs, agents, held, data, attributes)
     except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
         why = f"{type(error).__name__}: {error}"
         raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
 
 
-def _check_models(scenario: Scenario, agents: tuple[Agent, ...], held: LiftedObject, folder: Path) -> None:
+def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dict[str, str]:
+    """Return the models of a result, of which each was looked through; raises InputError."""
+    if SCENARIO_TEXT in attributes:
+        urdfs = {
+            name: str(attributes.get(f"{URDF_TEXT}{name}", "")) for name in (*scenario.agents, scenario.object.name)
+        }
+    else:
+        urdfs = urdfs_beside(file.parent, scenario)
+    for name, text in urdfs.items():
+        try:
+            check_urdf(text)
+        except ValueError as error:
+            raise InputError(str(file), NO_VALUE, f"the model of {name} cannot be read: {error}") from None
+    return urdfs
+
+
+def _check_models(file: Path, built: Sequence[Agent | LiftedObject], given: Sequence[Agent | LiftedObject]) -> None:
     """Raise InputError if the models of a result are not those of its scenario; small numbers may differ."""
-    built, table = agents_of(scenario), object_of(scenario)
-    given: tuple[Agent | LiftedObject, ...] = (*agents, held)
-    expected: tuple[Agent | LiftedObject, ...] = (*built, table)
-    frames = [*((agent.grasp_frame,) for agent in built), table.grasp_frames]
-    for one, other, names in zip(given, expected, frames, strict=True):
-        if found := difference(one.model, other.model, names):
-            raise InputError(
-                str(folder / urdf_files(scenario)[other.name]),
-                NO_VALUE,
-                f"is not the {other.name} of {SCENARIO} beside it: {found}; copy a result whole, or solve again",
-            )
+    for expected, one in zip(built, given, strict=True):
+        frames = expected.grasp_frames if isinstance(expected, LiftedObject) else (expected.grasp_frame,)
+        if found := difference(one.model, expected.model, frames):
+            why = f"the model of {one.name} is not that of the result's scenario: {found}; solve again"
+            raise InputError(str(file), NO_VALUE, why)
 
 
 def _solution(
@@ -89,7 +99,7 @@ def _solution(
     data: dict[str, Array],
     attributes: dict[str, Any],
 ) -> Solution:
-    record = read_record(str(attributes["record"]))
+    record = read_record(str(attributes["record"]), [agent.name for agent in agents])
     time, knots, intervals = data["time"], np.size(data["time"]), int(attributes["intervals"])
     if knots != intervals + 1 or knots > MOST_KNOTS:
         raise ValueError(f"time has {knots} values on {intervals} intervals")
@@ -97,7 +107,7 @@ def _solution(
     if not (np.diff(time) > 0.0).all():
         raise ValueError("time does not increase")
     if not np.allclose(time[[0, -1]], (0.0, scenario.duration), rtol=0.0, atol=SAME_TIME * scenario.duration):
-        raise ValueError(f"it lasts from {time[0]:g} to {time[-1]:g} s, the scenario beside it {scenario.duration:g} s")
+        raise ValueError(f"it lasts from {time[0]:g} to {time[-1]:g} s, its scenario {scenario.duration:g} s")
     forces = _array(data, "grasp_force", (knots, len(agents), 3))
     # Files from before there were moments have none.
     moments = _array(data, "grasp_moment", forces.shape) if "grasp_moment" in data else np.zeros_like(forces)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, asdict, dataclass, fields
 from typing import Any, TypeVar, get_args, get_type_hints
 
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Check
 from liftopt.solution.finding import SUBJECTS, Assessment, Finding
-from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
-from liftopt.solution.solution import StartRecord
+from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
+from liftopt.solution.solution import Solution, StartRecord
 
 T = TypeVar("T")
-TERMS, SECONDS = ("human", "robot", "acceleration", "force"), ("solve", "evaluation", "setup", "total")
+TERMS, SECONDS = ("acceleration", "force"), ("solve", "evaluation", "setup", "total")
 
 
 @dataclass(frozen=True)
@@ -31,12 +31,41 @@ class Record:
     kkt_tolerance: float
     notes: tuple[str, ...]
     accuracy: Accuracy | None
-    reasons: tuple[Obstacle, ...]
+    reasons: tuple[InfeasibilityReason, ...]
     suggested_changes: tuple[SuggestedChange, ...]
 
 
-def read_record(text: str) -> Record:
-    """Return the record of a JSON text. What older versions did not write is absent.
+def record(solution: Solution) -> dict[str, Any]:
+    """Return what is neither trajectory nor scenario, ready for JSON: how it was found and verified."""
+    return {
+        "outcome": solution.outcome,
+        "objective_weights": solution.objective_weights,
+        "seconds": solution.seconds,
+        "starts": [asdict(start) | {"objective": _finite(start.objective)} for start in solution.starts],
+        "kept_start": solution.kept_start,
+        # JSON knows no infinity: a check that is only reported has no limit.
+        "checks": [
+            asdict(check) | {"value": _finite(check.value), "limit": _finite(check.limit)}
+            for check in solution.verification.checks
+        ],
+        "kkt_tolerance": solution.verification.kkt_tolerance,
+        "notes": solution.notes,
+        "accuracy": None if solution.accuracy is None else _accuracy(solution.accuracy),
+        "reasons": [asdict(reason) | {"amount": _finite(reason.amount)} for reason in solution.reasons],
+        "remedies": [asdict(change) for change in solution.suggested_changes],
+    }
+
+
+def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
+    return {key: _finite(value) if isinstance(value, float) else value for key, value in asdict(accuracy).items()}
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def read_record(text: str, agents: Sequence[str]) -> Record:
+    """Return the record of a JSON text on a lift of ``agents``. What older versions did not write is absent.
 
     Raises:
         ValueError, KeyError: it is no JSON, or an entry is missing or of another type.
@@ -44,9 +73,9 @@ def read_record(text: str) -> Record:
     """
     read = _of("record", json.loads(text), dict)
     accuracy = read.get("accuracy")
-    record = Record(
+    found = Record(
         outcome=_of("outcome", read["outcome"], str),
-        objective_weights=_numbers("objective_weights", read["objective_weights"], TERMS),
+        objective_weights=_numbers("objective_weights", read["objective_weights"], (*agents, *TERMS)),
         seconds=_numbers("seconds", read["seconds"], SECONDS),
         starts=_entries(StartRecord, read["starts"]),
         kept_start=_of("kept_start", read["kept_start"], str),
@@ -55,12 +84,12 @@ def read_record(text: str) -> Record:
         kkt_tolerance=_of("kkt_tolerance", read["kkt_tolerance"], float),
         notes=tuple(_of("notes", note, str) for note in _of("notes", read["notes"], list)),
         accuracy=None if accuracy is None else _entry(Accuracy, accuracy),
-        reasons=_entries(Obstacle, read.get("reasons", [])),
+        reasons=_entries(InfeasibilityReason, read.get("reasons", [])),
         suggested_changes=_entries(SuggestedChange, read.get("remedies", [])),
     )
-    if not record.checks:
+    if not found.checks:
         raise ValueError("no check is recorded")
-    return record
+    return found
 
 
 def read_assessment(text: str) -> Assessment:

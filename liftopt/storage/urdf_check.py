@@ -8,14 +8,10 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from liftopt.errors import NO_VALUE, InputError
-from liftopt.files.bounded_read import read_regular
-
-LARGEST_FILE = 1_000_000  # bytes; the robot has 28 kB
+LARGEST_URDF = 1_000_000  # characters; the robot has 28 000
 MOST_LINKS = 200
 DEEPEST = 5  # robot, link, visual, geometry, box
 NAME = re.compile(r"[\w .+-]{1,100}")
@@ -31,24 +27,10 @@ ELEMENTS: dict[str, frozenset[str]] = {
 JOINTS = ("revolute", "prismatic", "fixed")
 
 
-def read_model(path: Path) -> str:
-    """Return the text of a URDF that belongs to a result.
-
-    Raises:
-        InputError: it is missing, cannot be read, or holds something that liftopt does not write.
-    """
-    try:
-        text = read_regular(path, LARGEST_FILE, "no model of liftopt is that large").decode("utf-8")
-        _check(text)
-    except FileNotFoundError:
-        raise InputError(str(path), NO_VALUE, "cannot be read, and belongs to the result: no such file") from None
-    except ValueError as error:  # UnicodeDecodeError too
-        raise InputError(str(path), NO_VALUE, f"is a model that cannot be read: {error}") from None
-    return text
-
-
-def _check(text: str) -> None:
+def check_urdf(text: str) -> None:
     """Raise ValueError if a URDF is not well-formed or holds something that liftopt does not write."""
+    if len(text) > LARGEST_URDF:
+        raise ValueError(f"it is larger than {LARGEST_URDF} characters; no model of liftopt is that large")
     if "<!DOCTYPE" in text.upper():
         raise ValueError("it declares a document type")
     try:

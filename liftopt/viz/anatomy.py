@@ -91,7 +91,7 @@ def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
     curves = []
     for name in np.array(robot.joint_names)[robot.moving]:
         joint = str(name).removeprefix(f"{robot.name}_")
-        meaning = joint_meaning(robot.name, model, joint).replace("-", "\N{MINUS SIGN}")
+        meaning = joint_meaning(robot.kind, model, joint).replace("-", "\N{MINUS SIGN}")
         curves.append(_curve(robot, joint, f"{joint} ({meaning})" if meaning else joint, +1))
     return tuple(curves)
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
@@ -63,7 +64,7 @@ class Case:
 
     def solve(self, solver: Any, **more: Any) -> SolverResult:
         """Solve from the start; ``more`` goes to the solver's ``solve``."""
-        result: SolverResult = solver.solve(self.start, deadline=time.monotonic() + PATIENCE, **more)
+        result: SolverResult = solver.solve(self.start, deadline=Deadline.after(PATIENCE), **more)
         return result
 
     def verified(self, result: SolverResult) -> bool:

@@ -8,7 +8,6 @@ there: its objectives are then the reference.
 from __future__ import annotations
 
 import json
-import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,11 +16,12 @@ import numpy as np
 from scipy.stats import qmc
 
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.initial_guess import posture_starts
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 
 FILE = Path(__file__).with_name("scenarios.json")
 COUNT, WITH_REFERENCE, SEED, STARTS = 60, 40, 2026, 8
@@ -105,7 +105,7 @@ def search_ends(scenario: Scenario) -> Ends:
     """Return the best posture pair that is found for a scenario."""
     team = Team.of(agents_of(scenario), object_of(scenario))
     problem = Problem(team, task_of(scenario), RestToRestSpline(20).mesh())
-    start = posture_starts(problem, 1, 0, time.monotonic() + 60.0)[0]
+    start = posture_starts(problem, 1, 0, Deadline.after(60.0))[0]
     control, force = (np.round(values, DECIMALS) for values in problem.unpack(start.x))
     return Ends(*(tuple(values.tolist()) for values in (control[0], control[-1], force[0], force[-1])))
 
@@ -117,7 +117,7 @@ def remake(commit: str) -> None:
         if len(kept) == COUNT:
             break
         more = (f"solver.starts={STARTS}", "solver.name=ipopt", PATIENT, REST)
-        solution = lift(load_scenario("table5", [*overrides, *more]))
+        solution = solve(load_scenario("table5", [*overrides, *more]))
         print(f"{len(kept)} kept: {solution.objective:.6f} {solution.status}", flush=True)
         if solution.solved:
             reference = solution.objective if len(kept) < WITH_REFERENCE else None

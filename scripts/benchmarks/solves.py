@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from benchmarks.case import PATIENCE, Case, Timing, measure, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import Varied, table5, varied_scenarios
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import FEWEST
 from liftopt.control.replanning import Replanner
@@ -19,7 +19,8 @@ from liftopt.scenario.keys import changes_in
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.mesh_refinement import meshes_below, neighbour
+from liftopt.search.mesh_refinement import meshes_below
+from liftopt.search.optimum_on_mesh import optimum_on_mesh
 
 MASS, HEIGHT, STATURE = 0.1, 0.02, 0.02  # share; [m]; [m]
 MIXES, MIXES_SEED = 100, 3
@@ -149,7 +150,7 @@ def _stepwise(varied: Varied, intervals: int, repeats: int) -> tuple[Timing, Can
         result = case.solve(solver)
         candidate = Candidate(case.scenario, case.problem, case.spline, "given", result) if result.converged else None
         for n in finer:
-            candidate = candidate and neighbour(cache, candidate, n, ("banded",), time.monotonic() + PATIENCE, print)
+            candidate = candidate and optimum_on_mesh(cache, candidate, n, ("banded",), Deadline.after(PATIENCE), print)
         return candidate
 
     return repeat(repeats, solve)

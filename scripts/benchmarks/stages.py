@@ -15,10 +15,11 @@ import numpy as np
 
 from benchmarks.case import PATIENCE, TOLERANCE, Case, measure, repeat
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.search.initial_guess import posture_starts
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 from liftopt.solution.verify import verify
 from liftopt.storage import writer as result_writer
 
@@ -58,7 +59,7 @@ def _stages(case: Case, repeats: int) -> dict[str, float]:
     kernels, team = repeat(repeats, Team.of, agents, held)
     programme, _ = repeat(repeats, lambda: fresh().nlp)
     rows, _ = repeat(repeats, lambda: fresh().constraints)
-    starts, _ = measure(min(SLOW, repeats), posture_starts, case.problem, 3, 0, time.monotonic() + SLOW * PATIENCE)
+    starts, _ = measure(min(SLOW, repeats), posture_starts, case.problem, 3, 0, Deadline.after(SLOW * PATIENCE))
     found = {
         "models of the agents and the object": models.median,
         "kernels, from the cache": kernels.median,
@@ -72,7 +73,7 @@ def _stages(case: Case, repeats: int) -> dict[str, float]:
         found[f"{name} set up"], found[f"{name}, its first solve"] = setup.median, first.median
     checked, _ = repeat(repeats, verify, case.problem, spline, result, TOLERANCE)
     found["verification"] = checked.median
-    solution = lift(case.scenario)
+    solution = solve(case.scenario)
     with tempfile.TemporaryDirectory() as folder:
         written, _ = repeat(repeats, result_writer.save, solution, Path(folder) / "result")
     found["files written"] = written.median

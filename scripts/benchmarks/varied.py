@@ -10,7 +10,7 @@ from benchmarks.case import Case
 from benchmarks.goals import Row
 from benchmarks.scenarios import PATIENT, REST, STARTS, varied_scenarios
 from liftopt.search.cache import SolverCache
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 
 AS_GOOD = 1e-3  # relative
 
@@ -47,7 +47,7 @@ def objectives(name: str, count: int | None = None) -> Row:
     kept = [varied for varied in varied_scenarios() if varied.objective is not None][:count]
     for varied in kept:
         overrides = (f"solver.name={name}", f"solver.starts={STARTS}", PATIENT, REST)
-        solution = lift(varied.scenario(*overrides), cache=cache)
+        solution = solve(varied.scenario(*overrides), cache=cache)
         ratios.append(solution.objective / varied.objective if solution.solved and varied.objective else np.inf)
         seconds.append(solution.seconds["total"])
         unsolved += not solution.solved

@@ -17,7 +17,7 @@ from benchmarks.case import measure, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import table5
 from liftopt.search.cache import SolverCache
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
 
 MANY = 64
@@ -37,10 +37,10 @@ def in_process(name: str, starts: int, repeats: int) -> Row:
     """Time a lift, verified, in a process that has lifted before and keeps its solvers."""
     overrides, cache = [f"solver.name={name}", f"solver.starts={starts}"], SolverCache()
     scenario = table5().scenario(*overrides, "solver.tries=0", "solver.workers=1")
-    timing, solution = repeat(repeats, lift, scenario, cache=cache)
-    alone, _ = measure(1, lift, scenario)
+    timing, solution = repeat(repeats, solve, scenario, cache=cache)
+    alone, _ = measure(1, solve, scenario)
     by_default = table5().scenario(*overrides)
-    scouted, _ = repeat(repeats, lift, by_default, cache=cache)
+    scouted, _ = repeat(repeats, solve, by_default, cache=cache)
     note = (
         f"{name}, solver.tries=0; with nothing kept from the lift before: {1e3 * alone.median:.0f} ms; "
         f"as by default, after scouts on a coarse mesh, in {by_default.solver.workers} threads: "
@@ -87,7 +87,7 @@ def many_starts(repeats: int) -> Row:
 
 
 @cache
-def _workshop() -> SolverCache:
+def _cache() -> SolverCache:
     """Return what this worker keeps from lift to lift."""
     return SolverCache()
 
@@ -96,7 +96,7 @@ def _half(seed: int, starts: int) -> float:
     """Return the objective of the best of some starts; in a worker."""
     overrides = ["solver.name=banded", "solver.workers=1", f"solver.starts={starts}", f"solver.seed={seed}"]
     scenario = table5().scenario(*overrides)
-    solution = lift(scenario, cache=_workshop())
+    solution = solve(scenario, cache=_cache())
     return solution.objective if solution.solved else float("inf")
 
 

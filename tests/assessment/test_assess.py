@@ -13,7 +13,7 @@ from liftopt.assessment.assess import assess
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import Assessment, Finding
-from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
+from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 
@@ -217,7 +217,7 @@ def test_an_iterate_is_not_judged_and_its_remedies_name_keys(light: Solution) ->
     failed = replace(
         light,
         outcome="infeasible: too far",
-        reasons=(Obstacle("closure", "robot", 0.2, "m", "the robot's grasp stays 0.200 m short", 0.0),),
+        reasons=(InfeasibilityReason("closure", "robot", 0.2, "m", "the robot's grasp stays 0.200 m short", 0.0),),
         suggested_changes=(SuggestedChange(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),),
     )
     assessment = assess(failed)

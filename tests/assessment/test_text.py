@@ -11,7 +11,7 @@ from liftopt.assessment.failure_text import MOST_LINES as MOST_OF_FAILURE
 from liftopt.assessment.failure_text import failure_text
 from liftopt.assessment.text import MOST_LINES, details_text, verdict_text
 from liftopt.solution.finding import Assessment, Finding, percent
-from liftopt.solution.infeasibility_report import Obstacle, SuggestedChange
+from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 
 
 def test_it_opens_with_the_verdict_and_says_who_lifts_what_where(solution: SimpleNamespace) -> None:
@@ -80,7 +80,9 @@ def test_details_hold_every_finding_in_full(solution: SimpleNamespace) -> None:
 
 def _failed(solution: SimpleNamespace, reasons: int, suggested_changes: int) -> SimpleNamespace:
     solution.solved, solution.status = False, "infeasible: the robot's grasp stays 1.43 m short"
-    solution.reasons = tuple(Obstacle("torque", "human_Q5", 3.0, "Nm", f"reason {i}") for i in range(reasons))
+    solution.reasons = tuple(
+        InfeasibilityReason("torque", "human_Q5", 3.0, "Nm", f"reason {i}") for i in range(reasons)
+    )
     solution.suggested_changes = (
         SuggestedChange(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),
         *(

@@ -16,6 +16,7 @@ import pytest
 
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions, object_functions
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -246,7 +247,7 @@ def small_lift(team: Team) -> Problem:
 
 @pytest.fixture(scope="session")
 def starts(small_lift: Problem) -> list[InitialGuess]:
-    return posture_starts(small_lift, 2, 0, np.inf)
+    return posture_starts(small_lift, 2, 0, NEVER)
 
 
 @pytest.fixture(scope="session")
@@ -256,7 +257,7 @@ def ipopt(small_lift: Problem) -> Ipopt:
 
 @pytest.fixture(scope="session")
 def solved(ipopt: Ipopt, starts: list[InitialGuess]) -> SolverResult:
-    return ipopt.solve(starts[0].x, deadline=np.inf)
+    return ipopt.solve(starts[0].x, deadline=NEVER)
 
 
 @pytest.fixture(scope="session")

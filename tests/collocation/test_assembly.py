@@ -158,7 +158,7 @@ def test_rows_by_name(plain: tuple[Plain, np.ndarray, np.ndarray], newton_euler:
         np.testing.assert_allclose(block.upper.reshape(speed.shape)[0] / task.duration, agent.limits.velocity)
         np.testing.assert_array_equal(block.lower, -block.upper)
         if agent.workspace is not None:
-            block, distance = rows_of(problem, g, "keep_in", agent.name)
+            block, distance = rows_of(problem, g, "workspace", agent.name)
             np.testing.assert_allclose(distance.ravel(), point @ agent.workspace.normal, atol=1e-12)
             assert (block.lower == agent.workspace.offset).all() and (block.upper == np.inf).all()
     block, balance = rows_of(problem, g, "balance", problem.team.object.name)
@@ -179,7 +179,7 @@ def test_blocks_cover_all_rows_in_order(problem: Problem) -> None:
     assert all(len(block.lower) == block.rows.stop - block.rows.start for block in blocks)
     assert {(b.name, b.who) for b in blocks} == {
         *((name, who) for name in ("closure", "torque", "grasp_force", "velocity") for who in ("human", "robot")),
-        ("keep_in", "human"),
+        ("workspace", "human"),
         ("balance", "table"),
         ("velocity", "table"),
     }
@@ -195,7 +195,7 @@ def test_oblique_half_space_and_tolerance(
     x = random_unknowns(problem, rng)
     reference = Plain(problem, x, 6)
     g = ca.DM(problem.nlp.jac_g(x, problem.parameters)[0]).full().ravel()
-    block, distance = rows_of(problem, g, "keep_in", "arm")
+    block, distance = rows_of(problem, g, "workspace", "arm")
     np.testing.assert_allclose(distance.ravel(), reference.agents[0][1] @ [0.6, 0.0, 0.8], atol=1e-12)
     block, balance = rows_of(problem, g, "balance", "box")
     np.testing.assert_allclose(balance, reference.balance(newton_euler), atol=1e-10)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from liftopt.collocation.batch import Batch
-from liftopt.collocation.elastic_mode import SoftProblem, elastic
+from liftopt.collocation.elastic_mode import SoftProblem, solve_elastic
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.model import load_scenario
-from liftopt.search.feasibility_screen import screen
+from liftopt.search.feasibility_screen import screen_ends
 from liftopt.search.initial_guess import naive_guess
 
 N = 10
@@ -25,7 +26,7 @@ def _problem(*overrides: str) -> Problem:
 
 def test_a_lift_that_is_possible_breaks_nothing_and_meets_every_row() -> None:
     problem = _problem()
-    found = elastic(problem, naive_guess(problem).x, np.inf)
+    found = solve_elastic(problem, naive_guess(problem).x, NEVER)
     assert found.converged and found.violations == ()
     g = Batch(problem).rows(found.x[None])[0]
     assert (problem.constraints.lower - g).max() < 1e-3
@@ -36,7 +37,7 @@ def test_a_lift_that_is_possible_breaks_nothing_and_meets_every_row() -> None:
 def test_grasps_lack_half_the_weight_less_their_cap(cap: float, mass: float) -> None:
     """Two hands at the edges of a level body that hardly moves carry half its weight each."""
     problem = _problem(f"limits.max_grasp_force={cap}", f"object.mass={mass}", *STILL)
-    found = elastic(problem, naive_guess(problem).x, np.inf)
+    found = solve_elastic(problem, naive_guess(problem).x, NEVER)
     assert found.converged
     assert {(v.constraint, v.who, v.unit) for v in found.violations} == {
         ("grasp_force", "human", "N"), ("grasp_force", "robot", "N")
@@ -50,15 +51,15 @@ def test_grasps_lack_half_the_weight_less_their_cap(cap: float, mass: float) -> 
 def test_a_robot_too_far_away_leaves_the_gap_of_inverse_kinematics_and_the_object_in_balance() -> None:
     """Nothing but closure is broken; the gap is no smaller than the shortest, and the balance is never for sale."""
     problem = _problem("task.standing_distance=2.3", *STILL)
-    obstacles, _ = screen(problem, 0, np.inf)
-    found = elastic(problem, naive_guess(problem).x, np.inf)
+    reasons, _ = screen_ends(problem, 0, NEVER)
+    found = solve_elastic(problem, naive_guess(problem).x, NEVER)
     first = found.violations[0]
     assert found.converged
     assert (first.constraint, first.unit) == ("closure", "m")
     gaps = sum(v.amount for v in found.violations if v.constraint == "closure")
     # The price is on the sum of the components, which is up to sqrt(3) of the distance.
-    shortest = min(obstacle.amount for obstacle in obstacles)
-    assert shortest - 1e-4 < gaps < 3**0.5 * max(obstacle.amount for obstacle in obstacles)
+    shortest = min(reason.amount for reason in reasons)
+    assert shortest - 1e-4 < gaps < 3**0.5 * max(reason.amount for reason in reasons)
     balance = next(block for block in problem.constraints.blocks if block.name == "balance")
     rows = Batch(problem).rows(found.x[None])[0][balance.rows]
     assert np.abs(rows).max() < 1e-3

@@ -11,6 +11,7 @@ import pytest
 
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
@@ -37,9 +38,9 @@ def grasp_map(points: np.ndarray) -> np.ndarray:
 
 def solve(problem: Problem) -> None:
     """Solve from a posture pair and check the point by Pinocchio in double precision."""
-    starts = posture_starts(problem, 1, 0, np.inf)
+    starts = posture_starts(problem, 1, 0, NEVER)
     assert starts
-    result = Ipopt(problem).solve(starts[0].x, deadline=np.inf)
+    result = Ipopt(problem).solve(starts[0].x, deadline=NEVER)
     assert result.converged, result.status
     assert kkt_error(problem, result.x, result.multipliers).error <= 1e-6
 

@@ -10,6 +10,7 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
@@ -22,9 +23,9 @@ from liftopt.search.initial_guess import (
     naive_guess,
     posture_starts,
     recombined,
-    turned,
+    turned_back,
 )
-from liftopt.search.moves import ELSEWHERE, SAME, Move, _least_there, apart, combinations
+from liftopt.search.moves import ELSEWHERE, SAME_MOVE, Move, _least_there, apart, combinations
 from liftopt.search.postures import PostureSolver, seed_coordinates
 
 
@@ -36,7 +37,7 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
     solver, rng = PostureSolver(team, task), np.random.default_rng(0)
     problem = Problem(team, task, RestToRestSpline(6).mesh())
     seeds = (seed_coordinates(problem, pose, rng) for _ in range(6))
-    posture = next(filter(None, (solver.solve(pose, seed, np.inf) for seed in seeds)), None)
+    posture = next(filter(None, (solver.solve(pose, seed, NEVER) for seed in seeds)), None)
     assert posture is not None
     at = posture.coordinates[-6:]
     given = ~np.isnan(pose)
@@ -68,7 +69,7 @@ def test_free_coordinates_of_a_pose_are_found(team: Team, make_task: Callable[..
     task = make_task(x=np.nan, agent_weights=(1.0, 1.0))
     problem = Problem(team, task, RestToRestSpline(6).mesh())
     seed = seed_coordinates(problem, task.start, None)
-    posture = PostureSolver(team, task).solve(task.start, seed, np.inf)
+    posture = PostureSolver(team, task).solve(task.start, seed, NEVER)
     assert posture is not None and np.isfinite(posture.coordinates).all()
     assert posture.coordinates[-4] == pytest.approx(0.91, abs=1e-9)
 
@@ -77,7 +78,7 @@ def test_pose_out_of_reach_has_no_posture(team: Team, make_task: Callable[..., L
     """Sawyer reaches about 1.3 m with its tool; the object is three metres away from it."""
     task = make_task(x=-1.2, agent_weights=(1.0, 1.0))
     seed = seed_coordinates(Problem(team, task, RestToRestSpline(6).mesh()), task.start, None)
-    assert PostureSolver(team, task).solve(task.start, seed, np.inf) is None
+    assert PostureSolver(team, task).solve(task.start, seed, NEVER) is None
 
 
 def test_what_inverse_kinematics_cannot_close_costs_no_solve(
@@ -88,7 +89,7 @@ def test_what_inverse_kinematics_cannot_close_costs_no_solve(
     solver, problem = PostureSolver(team, task), Problem(team, task, RestToRestSpline(6).mesh())
     monkeypatch.setattr(solver, "_solvers", [None])
     seeds = [seed_coordinates(problem, task.start, np.random.default_rng(i)) for i in range(5)]
-    assert list(solver.search(task.start, seeds, np.inf)) == [None] * 5
+    assert list(solver.search(task.start, seeds, NEVER)) == [None] * 5
 
 
 def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
@@ -98,14 +99,14 @@ def test_ipopt_finds_the_same_posture_where_the_banded_solver_is_missing(
     task = make_task(agent_weights=(1.0, 1.0))
     problem, rng = Problem(team, task, RestToRestSpline(6).mesh()), np.random.default_rng(0)
     seeds = [seed_coordinates(problem, task.start, rng) for _ in range(20)]
-    found = list(filter(None, PostureSolver(team, task).search(task.start, seeds, np.inf)))
+    found = list(filter(None, PostureSolver(team, task).search(task.start, seeds, NEVER)))
 
     def missing(*_: object) -> None:
         raise SolverError("not installed")
 
     monkeypatch.setattr(postures, "Banded", missing)
     solver = PostureSolver(team, task)
-    again = [solver.solve(task.start, posture.coordinates, np.inf) for posture in found]
+    again = [solver.solve(task.start, posture.coordinates, NEVER) for posture in found]
     same = [one and np.isclose(one.cost, posture.cost, rtol=1e-4) for one, posture in zip(again, found, strict=True)]
     assert sum(map(bool, same)) >= 2
 
@@ -116,7 +117,7 @@ def test_postures_held_two_at_a_time_are_the_same_bit_by_bit(team: Team, make_ta
     seeds = [seed_coordinates(problem, task.start, rng) for _ in range(12)]
     alone = PostureSolver(team, task)
     both = PostureSolver(team, task, like=alone, workers=2)
-    one, other = (list(solver.search(task.start, seeds, np.inf)) for solver in (alone, both))
+    one, other = (list(solver.search(task.start, seeds, NEVER)) for solver in (alone, both))
     assert sum(posture is not None for posture in one) > 2
     for first, second in zip(one, other, strict=True):
         assert (first is None) == (second is None)
@@ -153,7 +154,7 @@ def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift:
     """Pinocchio's forward kinematics: no two moves begin and end with all links within a few centimetres."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("liftopt.search.moves.OTHERS_WEIGHT", 0.0)
-        found = initial_guesses(small_lift, 8, 0, np.inf)
+        found = initial_guesses(small_lift, 8, 0, NEVER)
     assert found is not None
     for i, (agent, moves) in enumerate(zip(small_lift.team.agents, found.moves, strict=True)):
         assert 1 <= len(moves) <= 8
@@ -173,7 +174,7 @@ def test_moves_of_an_agent_differ_and_the_most_promising_comes_first(small_lift:
         for n in range(len(moves)):
             for m in range(n):
                 distance = max(np.linalg.norm(end[n] - end[m], axis=1).max() for end in ends)
-                assert distance > SAME
+                assert distance > SAME_MOVE
 
 
 def test_turning_a_joint_about_its_own_axis_moves_nothing(team: Team) -> None:
@@ -184,7 +185,7 @@ def test_turning_a_joint_about_its_own_axis_moves_nothing(team: Team) -> None:
     assert apart(robot, q).max() < 0.01
     q[1, 0] += 1.0
     between = apart(robot, q)
-    assert between[0, 1] == between[1, 0] > SAME
+    assert between[0, 1] == between[1, 0] > SAME_MOVE
 
 
 def _result(start: InitialGuess, objective: float, converged: bool = True) -> SolverResult:
@@ -216,23 +217,23 @@ def test_a_joint_that_presses_against_its_limit_turns_back(small_lift: Problem) 
     """Sawyer's fifth joint has 5.96 rad: at its upper limit, a full turn back is its lower limit, to 0.33 rad."""
     robot, layout = small_lift.team.agents[1], small_lift.layout
     x = naive_guess(small_lift).x
-    assert turned(small_lift, x) is None
+    assert turned_back(small_lift, x) is None
     column = layout.control[:, layout.columns(1)][:, 4]
     x[column] = robot.limits.q_upper[4]
-    start = turned(small_lift, x)
+    start = turned_back(small_lift, x)
     assert start is not None
     np.testing.assert_allclose(start.x[column], robot.limits.q_lower[4])
     others = np.setdiff1d(np.arange(len(x)), column)
     np.testing.assert_array_equal(start.x[others], x[others])
     x[column] = robot.limits.q_upper[4] - 2 * PRESSED
-    assert turned(small_lift, x) is None
+    assert turned_back(small_lift, x) is None
 
 
 def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[InitialGuess], small_lift: Problem) -> None:
     """Within bounds; each agent stands as in its own postures, the object as it does there in the mean."""
     assert 1 <= len(starts) <= 2
     assert [start.name for start in starts] == [f"posture pair {i + 1}" for i in range(len(starts))]
-    found = initial_guesses(small_lift, 2, 0, np.inf)
+    found = initial_guesses(small_lift, 2, 0, NEVER)
     assert found is not None
     lower, upper = small_lift.bounds()
     for start in starts:
@@ -248,7 +249,7 @@ def test_starts_join_the_postures_of_their_moves_at_rest(starts: list[InitialGue
 
 
 def test_equal_seeds_give_equal_starts(small_lift: Problem, starts: list[InitialGuess]) -> None:
-    again = posture_starts(small_lift, 2, 0, np.inf)
+    again = posture_starts(small_lift, 2, 0, NEVER)
     assert len(again) == len(starts)
     for one, other in zip(starts, again, strict=True):
         np.testing.assert_array_equal(one.x, other.x)
@@ -261,7 +262,7 @@ def test_two_starts_differ(starts: list[InitialGuess]) -> None:
 
 def test_no_time_no_starts(small_lift: Problem) -> None:
     began = time.monotonic()
-    assert posture_starts(small_lift, 4, 0, began - 1.0) == []
+    assert posture_starts(small_lift, 4, 0, Deadline.after(-1.0)) == []
     assert time.monotonic() - began < 5.0
 
 

@@ -98,7 +98,7 @@ def test_multiplier_of_an_inactive_row_or_of_the_wrong_side_is_found_out(
     """Complementarity: a multiplier times a distance that is not zero, also at a bound that does not exist."""
     blocks = {(block.name, block.who): block for block in small_lift.constraints.blocks}
     for key, sign in ((("torque", "human"), 1.0), (("torque", "human"), -1.0), (("grasp_force", "robot"), -1.0),
-                      (("keep_in", "human"), 1.0)):  # fmt: skip
+                      (("workspace", "human"), 1.0)):  # fmt: skip
         g = solved.multipliers.g.copy()
         g[blocks[key].rows.start] += sign
         wrong = kkt_error(small_lift, solved.x, Multipliers(solved.multipliers.x, g))

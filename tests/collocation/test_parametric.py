@@ -10,11 +10,12 @@ import pytest
 from liftopt.collocation.parametric import Optimum
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.result import SolverResult
-from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
-from liftopt.search.solve import Search
+from liftopt.search.session import Session
+from liftopt.search.solve import find_lift
 
 
 class Solved:
@@ -22,14 +23,14 @@ class Solved:
 
     def __init__(self) -> None:
         scenario = load_scenario("table5_near", ["solver.name=banded", "solver.starts=2", "solver.intervals=12"])
-        candidate = Search(scenario, SolverCache(), RestToRestSpline(12), lambda line: None).best()
+        candidate = find_lift(Session(scenario, SolverCache())).best
         self.solver = Banded(candidate.problem, BandedOptions(tolerance=1e-8))
         self.problem, self.result = candidate.problem, candidate.result
         self.result = self.near(candidate.problem)
 
     def near(self, problem: Problem) -> SolverResult:
         """Return the optimum of a problem near the first one's."""
-        result = self.solver.solve(self.result.x, deadline=np.inf, warm=self.result.multipliers, problem=problem)
+        result = self.solver.solve(self.result.x, deadline=NEVER, warm=self.result.multipliers, problem=problem)
         assert result.converged
         return result
 

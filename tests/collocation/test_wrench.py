@@ -14,6 +14,7 @@ from liftopt.collocation.constraints import BALANCE_ROWS
 from liftopt.collocation.flat_hand import flat_hand_rows
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
@@ -155,7 +156,7 @@ def test_inverse_kinematics_turns_the_hand(
     problem = Problem(Team.of(agents, table), make_task(), Mesh.at_rest())
     rng, pose = np.random.default_rng(3), make_task().start
     seeds = np.array([seed_coordinates(problem, pose, rng) for _ in range(16)])
-    reach = InverseKinematics(problem).reach(pose, seeds, np.inf, most=40)
+    reach = InverseKinematics(problem).reach(pose, seeds, NEVER, most=40)
     held = reach.coordinates[reach.shortfall < 1e-6]
     assert len(held) >= 4
     for coordinates in held:

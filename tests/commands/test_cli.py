@@ -31,7 +31,7 @@ class FakeLift(ModuleType):
         self.saved: list[Path] = []
         self.aside = ""  # folder within the one asked for that an iterate goes to
 
-    def lift(self, scenario: Scenario, *, progress: Any) -> SimpleNamespace:  # noqa: D102
+    def solve(self, scenario: Scenario, *, progress: Any) -> SimpleNamespace:  # noqa: D102
         assert callable(progress)
         self.asked.append(scenario)
         if self.raises is not None:

@@ -12,10 +12,10 @@ from liftopt.commands.cli import main
 
 @pytest.fixture(autouse=True)
 def nothing_is_solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    def lift(*_: object, **__: object) -> None:
+    def solve(*_: object, **__: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("liftopt.search.solve.lift", lift)
+    monkeypatch.setattr("liftopt.search.solve.solve", solve)
     monkeypatch.chdir(tmp_path)
 
 

@@ -51,9 +51,9 @@ def test_a_velocity_that_is_not_the_motions_breaks_the_books(solution):
 
 
 def test_a_heavier_object_than_was_solved_leaves_work_that_nobody_does(solution):
-    table = solution.urdfs["table.urdf"]
+    table = solution.urdfs["table"]
     heavier = table.replace('<mass value="2.0"/>', '<mass value="2.2"/>')
     assert heavier != table
-    wrong = replace(solution, urdfs=solution.urdfs | {"table.urdf": heavier})
+    wrong = replace(solution, urdfs=solution.urdfs | {"table": heavier})
     # A tenth of the table's 9.8 J, of the 32 J of all.
     assert unexplained(energy_books(wrong, 2)) > 0.02

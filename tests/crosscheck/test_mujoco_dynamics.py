@@ -58,7 +58,7 @@ def test_models_keep_their_mass_and_get_no_more_than_a_negligible_one(solution):
         for text in solution.urdfs.values()
         for mass in ElementTree.fromstring(text.encode()).iter("mass")
     ]
-    model = spec_of(solution).compile()
+    model = spec_of(solution.urdfs.values()).compile()
     assert model.body_mass.sum() == pytest.approx(sum(masses), rel=1e-12)
     assert model.nv == sum(len(agent.joint_names) for agent in solution.agents) + 6
     assert model.body_mass[1:].min() > 0.0
@@ -70,7 +70,7 @@ def test_what_is_left_out_of_the_copy_is_limits_and_shapes_alone(solution):
         for text in solution.urdfs.values()
         for link in ElementTree.fromstring(text.encode()).iter("link")
     }
-    copy = ElementTree.fromstring(merged_urdf(solution, ["human_GT1"]))
+    copy = ElementTree.fromstring(merged_urdf(solution.urdfs.values(), ["human_GT1"]))
     assert {link.get("name") for link in copy.iter("link")} == links
     assert {part.tag for link in copy.iter("link") for part in link} == {"inertial"}
     kinds = {joint.get("name"): joint.get("type") for joint in copy.iter("joint")}
@@ -79,8 +79,12 @@ def test_what_is_left_out_of_the_copy_is_limits_and_shapes_alone(solution):
 
 def test_velocities_are_the_rates_of_the_positions_in_mujocos_conventions(solution):
     # Oracle: MuJoCo's own difference of two positions, by central differences on a fine grid.
-    mujoco, model, dense = pytest.importorskip("mujoco"), spec_of(solution).compile(), refined(solution, 200)
-    states, step = states_of(model, dense), dense.time[1]
+    mujoco, model, dense = (
+        pytest.importorskip("mujoco"),
+        spec_of(solution.urdfs.values()).compile(),
+        refined(solution, 200),
+    )
+    states, step = states_of(model, dense.agents, dense.object), dense.time[1]
     rate = np.zeros(model.nv)
     for k in range(100, len(dense.time) - 1, 331):
         mujoco.mj_differentiatePos(model, rate, 2 * step, states.qpos[k - 1], states.qpos[k + 1])

@@ -59,7 +59,7 @@ def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -
     """CasADi takes an exception from a signal handler for a failed evaluation: the solve would go on."""
     from liftopt.collocation.solvers import ipopt
     from liftopt.scenario.model import load_scenario
-    from liftopt.search.solve import lift
+    from liftopt.search.solve import solve
 
     usual, evaluations = ipopt._Stop.eval_buffer, []
 
@@ -73,7 +73,7 @@ def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
-            lift(load_scenario("table5", ["solver.name=ipopt", "solver.starts=1"]))
+            solve(load_scenario("table5", ["solver.name=ipopt", "solver.starts=1"]))
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     finally:
         signal.signal(signal.SIGINT, before)

@@ -164,7 +164,7 @@ def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, rais
         stature_estimated=False,
         stature_by={},
         lengths=link_lengths(subject),
-        urdf=solution.urdfs["human_arm.urdf"],
+        urdf=solution.urdfs["human"],
         joint_names=human.joint_names,
         time=time,
         q=scale * over(human.q) + raised * human.moving,

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from liftopt.assessment.assess import assess
-from liftopt.scenario.build import motions_of
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
-from liftopt.search.solve import Search, lift
+from liftopt.search.session import Session
+from liftopt.search.solve import explain, find_lift, solve
 from liftopt.solution.finding import CAUTION
 from liftopt.solution.solution import Solution
 
@@ -43,11 +44,11 @@ def _assert_same(one: Solution, other: Solution) -> None:
 def test_a_machine_that_is_hundreds_of_times_slower_finds_the_same(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its clock goes on by a second whenever it is looked at, so that this machine's speed does not count."""
     scenario = load_scenario("table5", CASES[case])
-    idle = lift(scenario)
+    idle = solve(scenario)
     assert idle.solved == (case == "solved")
     clock = itertools.count()
     monkeypatch.setattr(time, "monotonic", lambda: float(next(clock)))
-    _assert_same(idle, lift(scenario))
+    _assert_same(idle, solve(scenario))
 
 
 def _cut(scenario: Any, stage: str, monkeypatch: pytest.MonkeyPatch, by: float = 0.95) -> Solution:
@@ -59,7 +60,7 @@ def _cut(scenario: Any, stage: str, monkeypatch: pytest.MonkeyPatch, by: float =
         if line.startswith(stage) and not late[0]:
             late[0] = by * scenario.solver.time_limit
 
-    return lift(scenario, progress=jump)
+    return solve(scenario, progress=jump)
 
 
 @pytest.mark.parametrize("stage", ["varying the best of", "solving on 16 intervals", "estimating the error"])
@@ -85,9 +86,9 @@ def test_a_verdict_that_time_cut_short_is_told_as_such(stage: str, monkeypatch: 
 
 
 def test_no_time_at_all_is_told_and_the_best_iterate_is_finite() -> None:
-    search = Search(scenario := load_scenario("table5", SMALL), SolverCache(), motions_of(scenario), lambda line: None)
-    search.deadline = search.end = time.monotonic()
-    solution = search.explained(search.best())
+    session = Session(load_scenario("table5", SMALL), SolverCache())
+    session.limit = Deadline.after(0.0)
+    solution = explain(session, find_lift(session))
     assert solution.status.startswith("not converged (time limit of 3600 s reached)")
     assert all(np.isfinite(agent.tau).all() for agent in solution.agents)
 
@@ -111,7 +112,7 @@ def test_an_unsolvable_lift_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> N
 
     for kind in spent:
         monkeypatch.setattr(kind, "solve", counted(kind))
-    solution = lift(load_scenario("table5", ["duration=0.28", "object.mass=10", "solver.time_limit=3600"]))
+    solution = solve(load_scenario("table5", ["duration=0.28", "object.mass=10", "solver.time_limit=3600"]))
     assert not solution.solved and solution.reasons
     # At 0.8 and 8 ms on an idle processor of 2023: 12 s of one, shared by two workers for the most part.
     assert spent[Banded] < 13e3 and spent[Ipopt] < 310

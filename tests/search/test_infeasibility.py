@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -13,16 +12,22 @@ import pytest
 from scipy.optimize import minimize
 
 from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import agent_of
 from liftopt.scenario.model import load_scenario
-from liftopt.search import suggested_changes as suggested_changes
+from liftopt.search import suggested_changes
+from liftopt.search.adjustables import adjustables
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.coarse_search import coarse_search
-from liftopt.search.initial_guess import InitialGuess, InitialGuessSet
-from liftopt.search.solve import WIDER, Search, lift
+from liftopt.search.found import Found
+from liftopt.search.infeasibility import infeasible_candidate
+from liftopt.search.initial_guess import InitialGuess, InitialGuessSet, naive_guess
+from liftopt.search.session import Session
+from liftopt.search.solve import WIDER, solve
+from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 
@@ -31,17 +36,25 @@ MUCH_TOO_FAR = ("task.standing_distance=3",)
 HEAVY = ("object.mass=40",)
 WEAK = ("limits.max_grasp_force=8", "duration=8")
 FAST = ("duration=0.27", "object.mass=6", "solver.starts=3")
-BANDED = ("solver.name=banded", "solver.starts=2")
+BANDED = ("solver.name=banded", "solver.starts=2", "solver.time_limit=3600")
 
 
 @cache
-def _workshop() -> SolverCache:
+def _cache() -> SolverCache:
     return SolverCache()
 
 
 @cache
 def _solution(*overrides: str) -> Solution:
-    return lift(load_scenario("table5", [*BANDED, *overrides]), cache=_workshop())
+    return solve(load_scenario("table5", [*BANDED, *overrides]), cache=_cache())
+
+
+def _infeasible(session: Session, start: InitialGuess | None = None) -> Found:
+    """Return what a search hands on that found nothing, and for what reasons."""
+    problem, reasons = session.problem(session.spline), _solution(*FAR).reasons
+    start = start or naive_guess(problem)
+    best = infeasible_candidate(session.scenario, problem, session.spline, start, reasons)
+    return Found(best, reasons=reasons)
 
 
 def _value(solution: Solution, *keys: str) -> float:
@@ -102,8 +115,8 @@ def test_an_object_too_heavy_for_two_grasps_is_to_weigh_what_they_hold() -> None
 
 def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 2 m/s, 0.5 m take 0.26 s with 20 intervals; 0.27 s leave that speed, and torques and times are named."""
-    longer = suggested_changes.levers(load_scenario("table5"))[0]
-    monkeypatch.setattr(suggested_changes, "levers", lambda scenario: [longer])
+    longer = adjustables(load_scenario("table5"))[0]
+    monkeypatch.setattr(suggested_changes, "adjustables", lambda scenario: [longer])
     solution = _solution(*FAST)
     assert solution.status.startswith("infeasible: ")
     assert "\n" not in solution.status
@@ -118,7 +131,7 @@ def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(mo
 
 
 @pytest.mark.parametrize("overrides", [FAR, WEAK, HEAVY])
-def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, ...]) -> None:
+def test_each_suggested_change_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, ...]) -> None:
     """Solved from the beginning, not from the motion that led to it; a heavy object could be let fall at first."""
     solution = _solution(*overrides)
     assert solution.suggested_changes == tuple(sorted(solution.suggested_changes, key=lambda change: change.size))
@@ -129,25 +142,27 @@ def test_each_remedy_leads_to_a_verified_lift_and_is_told(overrides: tuple[str, 
     assert solution.suggested_changes
     for change in solution.suggested_changes:
         changes = dict(zip(change.keys, change.values, strict=True))
-        assert lift(solution.scenario.replace(changes), cache=_workshop()).solved
+        assert solve(solution.scenario.replace(changes), cache=_cache()).solved
 
 
-def test_no_work_or_no_time_no_remedy_and_the_scenario_stays_as_it_is() -> None:
+def test_no_work_or_no_time_no_suggested_change_and_the_scenario_stays_as_it_is() -> None:
     scenario = load_scenario("table5", [*BANDED, *FAR])
     before = scenario.to_dict()
-    search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
-    assert suggested_changes.SuggestedChanges(search, [], work=0.0).against(_solution(*FAR).reasons) == ()
-    search.deadline = time.monotonic()
-    assert suggested_changes.SuggestedChanges(search, []).against(_solution(*FAR).reasons) == ()
+    session = Session(scenario, _cache())
+    found = _infeasible(session)
+    assert suggest_changes(session, found, work=0.0) == ()
+    session.limit = Deadline.after(0.0)
+    assert suggest_changes(session, found) == ()
     assert scenario.to_dict() == before
 
 
-def test_a_change_that_leaves_what_a_model_can_be_is_no_remedy() -> None:
+def test_a_change_that_leaves_what_a_model_can_be_is_not_suggested() -> None:
     """A scenario takes a base height of 0.01 m, Sawyer's model none below 0.1 m."""
     scenario = load_scenario("table5", [*BANDED, "robot.base_height=0.3"])
-    search = Search(scenario, _workshop(), RestToRestSpline(20), lambda line: None)
-    (lever,) = [lever for lever in suggested_changes.levers(scenario) if lever.keys == ("robot.base_height",)]
-    assert suggested_changes.SuggestedChanges(search, [])._candidate(lever, -29, None) is None
+    session = Session(scenario, _cache())
+    (height,) = [found for found in adjustables(scenario) if found.keys == ("robot.base_height",)]
+    trials = suggested_changes._Trials(session, _infeasible(session), suggested_changes.WORK)
+    assert trials.solve(height, -29) is None
 
 
 def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
@@ -157,18 +172,18 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
 
     To which of several optima that leads, and whether that one takes a finer mesh, is for rounding to decide.
     """
-    solve = Banded.solve
+    own_solve = Banded.solve
     failed: list[SolverResult] = []
 
     def fails_first(self: Banded, x0: np.ndarray, **given: Any) -> SolverResult:
-        result = solve(self, x0, **given)
+        result = own_solve(self, x0, **given)
         if len(self.problem.mesh.phase) == 1 or len(failed) == 2:  # a posture, or the last start
             return result
         failed.append(result)
         return replace(result, converged=False, status="Line_Search_Failed", x=x0)
 
     monkeypatch.setattr(Banded, "solve", fails_first)
-    solution = lift(load_scenario("table5", [*BANDED, "solver.tries=0"]))
+    solution = solve(load_scenario("table5", [*BANDED, "solver.tries=0"]))
     assert solution.solved and solution.kept_start.startswith("elastic")
     first, others = solution.starts[:3], solution.starts[3:]
     assert [start.status for start in first] == ["Line_Search_Failed"] * 2 + ["converged"]
@@ -177,19 +192,20 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
 
 
 def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first scouts come back with nothing and the starts on the full mesh fail; those after them find the lift."""
+    """The first coarse search finds nothing and the starts on the full mesh fail; those after them find the lift."""
     asked: list[int] = []
 
-    def blind(search: Search, found: InitialGuessSet, tries: int, *most: int) -> list[Candidate]:
+    def blind(
+        session: Session, spline: RestToRestSpline, guesses: InitialGuessSet, tries: int, *most: int
+    ) -> list[Candidate]:
         asked.append(tries)
-        return coarse_search(search, found, tries, *most) if len(asked) > 1 else []
+        return coarse_search(session, spline, guesses, tries, *most) if len(asked) > 1 else []
 
-    def fails(self: Search, starts: list[InitialGuess]) -> Candidate:
-        self.obstacles = _solution(*FAR).reasons
-        return self._hindered(starts[0], list(self.obstacles))
+    def fails(session: Session, spline: RestToRestSpline, starts: list[InitialGuess]) -> Found:
+        return _infeasible(session, starts[0])
 
     monkeypatch.setattr("liftopt.search.solve.coarse_search", blind)
-    monkeypatch.setattr(Search, "_solved", fails)
-    solution = lift(load_scenario("table5", [*BANDED, "solver.tries=2"]), cache=_workshop())
+    monkeypatch.setattr("liftopt.search.solve.solve_starts", fails)
+    solution = solve(load_scenario("table5", [*BANDED, "solver.tries=2"]), cache=_cache())
     assert asked == [2, 2 * WIDER]
     assert solution.solved and solution.reasons == () == solution.suggested_changes

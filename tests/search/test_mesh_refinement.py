@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import PRUNED, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -19,22 +20,26 @@ from liftopt.control.replanning import Replanner
 from liftopt.scenario.model import Refine, load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.mesh_refinement import SAME_OPTIMUM, compared, distance, finer, neighbour, rivals, unmet
-from liftopt.search.solve import Search, lift
+from liftopt.search.mesh_accuracy import compared, distance, unmet
+from liftopt.search.mesh_refinement import refine_mesh
+from liftopt.search.optima import SAME_OPTIMUM, indistinguishable
+from liftopt.search.optimum_on_mesh import optimum_on_mesh
+from liftopt.search.session import Session
+from liftopt.search.solve import solve
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 
-BANDED = ("solver.name=banded", "solver.starts=2")
+BANDED = ("solver.name=banded", "solver.starts=2", "solver.time_limit=3600")
 # Hermite-Simpson on the states without zero acceleration at the ends, on 20 intervals: crosscheck/transcriptions.py.
 LIMIT_OF_TABLE5 = 817.3
 
 
 @pytest.fixture(scope="module")
 def refined() -> Solution:
-    return lift(load_scenario("table5", [*BANDED, "refine.on=true"]))
+    return solve(load_scenario("table5", [*BANDED, "refine.on=true"]))
 
 
 @pytest.fixture(scope="module")
@@ -83,44 +88,43 @@ def test_motion_on_a_finer_mesh_is_the_same_motion(coarse: Candidate) -> None:
     np.testing.assert_allclose(back, coarse.result.x, atol=1e-9)
 
 
-def test_a_plan_that_cannot_win_is_given_up_and_told(coarse: Candidate) -> None:
-    """Against a rival of a tenth of its objective, and against none."""
-    told: list[tuple[str, str]] = []
+def test_a_candidate_that_cannot_win_is_given_up_and_heard_of(coarse: Candidate) -> None:
+    """Against an incumbent of a tenth of its objective, and against none."""
+    heard: list[tuple[str, str]] = []
     incumbent = replace(coarse.result, objective=0.1 * coarse.result.objective)
 
     def tell(name: str, result: SolverResult) -> None:
-        told.append((name, result.status))
+        heard.append((name, result.status))
 
-    given = (SolverCache(), coarse, 40, ("banded",), np.inf, lambda line: None)
-    assert neighbour(*given, incumbent=incumbent, told=tell) is None
-    there = neighbour(*given, told=tell)
+    given = (SolverCache(), coarse, 40, ("banded",), NEVER, lambda line: None)
+    assert optimum_on_mesh(*given, incumbent=incumbent, on_solve=tell) is None
+    there = optimum_on_mesh(*given, on_solve=tell)
     assert there is not None
-    assert told == [(there.start, PRUNED), (there.start, there.result.status)]
+    assert heard == [(there.start, PRUNED), (there.start, there.result.status)]
 
 
 def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Candidate) -> None:
     """The oracle is a cold solve of the same motion beside a warm one."""
-    search = Search(coarse.scenario, SolverCache(), RestToRestSpline(40), lambda line: None)
-    best = finer(search, [coarse, coarse], 40)
-    assert best is not None and best.solved
-    names = [record.name for record in search.records]
+    session = Session(coarse.scenario, SolverCache())
+    found = refine_mesh(session, [coarse, coarse], 40)
+    assert found is not None and found.best.solved
+    best = found.best
+    names = [record.name for record in session.records]
     assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh on 40, N = 40"]
-    assert best.origin is coarse and len(search.candidates) == len(
-        {round(p.result.objective, 2) for p in search.candidates}
-    )
+    assert best.origin is coarse and len(found.others) == len({round(p.result.objective, 2) for p in found.others})
     x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
-    cold = search.solvers[0].solve(x, deadline=np.inf, problem=best.problem, incumbent=best.result)
-    warm = neighbour(SolverCache(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    cold = session.solvers(best.problem)[0].solve(x, deadline=NEVER, problem=best.problem, incumbent=best.result)
+    warm = optimum_on_mesh(SolverCache(), coarse, 40, ("banded",), NEVER, lambda line: None)
     assert warm is not None and cold.iterations > 1.5 * warm.result.iterations
-    assert abs(search.records[2].iterations - cold.iterations) <= 2
+    assert abs(session.records[2].iterations - cold.iterations) <= 2
     led = [result.objective for result in (warm.result, cold) if result.converged]
     assert best.result.objective == pytest.approx(min(led), rel=SAME_OPTIMUM)
 
 
-def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
+def test_a_start_with_an_incumbent_that_fails_is_left_and_meshes_between_are_skipped_where_nothing_is_found(
     coarse: Candidate, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """IPOPT is no help against a rival; from 20 intervals 80 are reached even if 40 fail."""
+    """IPOPT is no help against an incumbent; from 20 intervals 80 are reached even if 40 fail."""
     solve = Banded.solve
 
     def fail_on_40(self: Banded, x0: Any, **given: Any) -> SolverResult:
@@ -135,17 +139,18 @@ def test_a_start_with_a_rival_that_fails_is_left_and_meshes_between_are_skipped_
         patch.setattr(Banded, "solve", fail_on_40)
         patch.setattr(Ipopt, "solve", never)
         incumbent = coarse.result
-        assert neighbour(SolverCache(), coarse, 40, ("banded", "ipopt"), np.inf, lambda line: None, incumbent) is None
+        assert (
+            optimum_on_mesh(SolverCache(), coarse, 40, ("banded", "ipopt"), NEVER, lambda line: None, incumbent) is None
+        )
     monkeypatch.setattr(Banded, "solve", fail_on_40)
     monkeypatch.setattr(Ipopt, "solve", lambda self, x0, **_: replace(coarse.result, converged=False))
-    search = Search(coarse.scenario, SolverCache(), RestToRestSpline(80), lambda line: None)
-    best = finer(search, [coarse], 80)
-    assert best is not None and best.solved and best.origin is coarse
+    found = refine_mesh(Session(coarse.scenario, SolverCache()), [coarse], 80)
+    assert found is not None and found.best.solved and found.best.origin is coarse
 
 
 def test_multipliers_keep_the_sum_over_time(coarse: Candidate) -> None:
     """A multiplier times what it stands for is the objective's change, whatever the mesh: equal sums, row by row."""
-    there = neighbour(SolverCache(), coarse, 40, ("banded",), np.inf, lambda line: None)
+    there = optimum_on_mesh(SolverCache(), coarse, 40, ("banded",), NEVER, lambda line: None)
     assert there is not None
     assert distance(coarse, there) < 0.2
     moved = transfer_multipliers(coarse.problem, coarse.result.multipliers, there.problem)
@@ -200,11 +205,14 @@ def test_what_is_unmet_is_named_with_its_amount() -> None:
         assert words in text
 
 
-def test_rivals_are_what_the_mesh_cannot_tell_apart() -> None:
+def test_indistinguishable_are_what_the_mesh_cannot_tell_apart() -> None:
     candidates = [_candidate(20, objective) for objective in (100.0, 100.001, 105.0, 130.0)]
     known = Accuracy(0.0, 0.0, 0.0, 90.0, 0.1)
-    assert [candidate.result.objective for candidate in rivals(candidates, candidates[0], known)] == [100.0, 105.0]
-    everything = rivals(candidates, candidates[0], Accuracy(0.0, 0.0, 0.0))
+    assert [candidate.result.objective for candidate in indistinguishable(candidates, candidates[0], known)] == [
+        100.0,
+        105.0,
+    ]
+    everything = indistinguishable(candidates, candidates[0], Accuracy(0.0, 0.0, 0.0))
     assert [candidate.result.objective for candidate in everything] == [100.0, 105.0, 130.0]
 
 

@@ -24,7 +24,6 @@ from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario, scenario_from_dict
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
@@ -68,7 +67,7 @@ def _moved(pattern: Solution, scenario: Scenario, seed: int) -> Solution:
         time=np.linspace(0.0, scenario.duration, knots),
         agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
         object=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
-        urdfs={urdf_files(scenario)[name]: text for name, text in texts.items()},
+        urdfs=texts,
     )
 
 

@@ -13,8 +13,8 @@ import xarray as xr
 
 from liftopt.commands.cli import main
 from liftopt.scenario.model import load_scenario
-from liftopt.search.mesh_refinement import AFRESH
-from liftopt.search.solve import lift
+from liftopt.search.optimum_on_mesh import AFRESH
+from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
 
 CHEAP = ("solver.intervals=20", "solver.starts=1")
@@ -52,7 +52,7 @@ def _numbers(solution: Solution) -> list[np.ndarray]:
 
 def test_same_scenario_gives_the_same_answer_bit_by_bit() -> None:
     scenario = load_scenario("table5", [*CHEAP, "solver.intervals=16", "solver.starts=2", "solver.seed=7"])
-    first, second = lift(scenario), lift(scenario)
+    first, second = solve(scenario), solve(scenario)
     for one, other in zip(_numbers(first), _numbers(second), strict=True):
         np.testing.assert_array_equal(one, other)
     assert [(s.name, s.objective, s.iterations) for s in first.starts] == [
@@ -62,7 +62,7 @@ def test_same_scenario_gives_the_same_answer_bit_by_bit() -> None:
 
 def test_saved_scenario_solves_again_to_the_same_answer(solved: Callable[..., Any]) -> None:
     solution, folder = solved("table5_near", "solver.starts=2")
-    again = lift(load_scenario(str(folder / "scenario.toml")))
+    again = solve(load_scenario(str(folder / "scenario.toml")))
     for one, other in zip(_numbers(solution), _numbers(again), strict=True):
         np.testing.assert_array_equal(one, other)
 
@@ -89,7 +89,7 @@ def test_an_agent_without_weight_takes_the_load_off_the_other(solved: Callable[.
 def test_raising_and_lowering_are_the_same_motion_backwards(solved: Callable[..., Any]) -> None:
     """Time reversal keeps q and qdd, so torques and the objective stay: the best of equal starts is as good."""
     up = solved("table5").solution
-    down = lift(load_scenario("table5", ["task.start.height=1.4", "task.end.height=0.9"]))
+    down = solve(load_scenario("table5", ["task.start.height=1.4", "task.end.height=0.9"]))
     assert down.solved, down.status
     assert down.objective == pytest.approx(up.objective, rel=0.05)
 
@@ -115,7 +115,7 @@ def test_coarse_mesh_is_refined_and_that_is_said(solved: Callable[..., Any]) -> 
 
 def test_progress_is_told_a_line_at_a_time() -> None:
     lines: list[str] = []
-    lift(load_scenario("table5", ["solver.time_limit=1", *CHEAP]), progress=lines.append)
+    solve(load_scenario("table5", ["solver.time_limit=1", *CHEAP]), progress=lines.append)
     assert all(line and "\n" not in line for line in lines)
     assert any("verifying" in line for line in lines)
 
@@ -159,13 +159,13 @@ def test_no_solution_is_exit_3_with_the_reason_and_the_best_iterate_marked(
 
 def test_time_for_compiling_is_not_taken_from_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock: a solver that takes long to build, as one that compiles at first use, leaves the whole limit."""
-    from liftopt.collocation.spline import RestToRestSpline
     from liftopt.search import cache as cache
-    from liftopt.search.solve import Search
+    from liftopt.search.session import Session
 
     monkeypatch.setattr(cache, "Banded", lambda *_: time.sleep(1.0))
-    scenario = load_scenario("table5", ["solver.name=banded", "solver.time_limit=10"])
-    search = Search(scenario, cache.SolverCache(), RestToRestSpline(8), lambda line: None)
-    assert search.prepared - search.began > 1.0
-    assert search.deadline - search.prepared == pytest.approx(7.0)
-    assert search.end - search.prepared == pytest.approx(9.0)
+    scenario = load_scenario("table5", ["solver.name=banded", "solver.time_limit=10", "solver.intervals=8"])
+    session = Session(scenario, cache.SolverCache())
+    assert session.seconds["setup"] > 1.0
+    assert session.deadline.at - session.limit.began == pytest.approx(7.0)
+    session.finish()
+    assert session.deadline.at - session.limit.began == pytest.approx(9.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.search import variations
 from liftopt.search.initial_guess import InitialGuess
@@ -43,14 +43,14 @@ def tenfold(monkeypatch: pytest.MonkeyPatch) -> int:
     def ten(problem: object, x: np.ndarray) -> Iterator[InitialGuess]:
         return iter([InitialGuess(str(n), 10.0 * x + n) for n in range(count)])
 
-    monkeypatch.setattr(variations, "mirrored", ten)
-    monkeypatch.setattr(variations, "rests", lambda *_: [])
-    monkeypatch.setattr(variations, "detours", lambda *_: [])
-    monkeypatch.setattr(variations, "other_ways", lambda *_: [])
+    monkeypatch.setattr(variations, "mirrored_joints", ten)
+    monkeypatch.setattr(variations, "low_cost_postures", lambda *_: [])
+    monkeypatch.setattr(variations, "via_postures", lambda *_: [])
+    monkeypatch.setattr(variations, "alternative_paths", lambda *_: [])
     return count
 
 
-def _vary(solver: Any, optima: list[SolverResult], idle: float, deadline: float = 1e12) -> list[float]:
+def _vary(solver: Any, optima: list[SolverResult], idle: float, deadline: Deadline = NEVER) -> list[float]:
     nothing: Any = SimpleNamespace(kinematics=None)
     tried = list(vary([solver], nothing, nothing, optima, idle, 0, deadline))
     assert [float(start.x[0]) for start, _ in tried] == [value for value, _ in solver.asked]
@@ -67,7 +67,7 @@ def test_the_best_is_varied_first_and_none_that_is_too_far_above_it(tenfold: int
     assert {incumbent for _, incumbent in solver.asked} == {10.0}
 
 
-def test_what_is_better_is_varied_next_and_becomes_the_rival_of_the_next_turn(tenfold: int) -> None:
+def test_what_is_better_is_varied_next_and_becomes_the_incumbent_of_the_next_turn(tenfold: int) -> None:
     solver = Table({13.0: 8.0, 131.0: 7.0})
     asked = _vary(solver, [_result(1.0, 10.0)], 2 * TURN)
     assert asked[:TURN] == [10.0 + n for n in range(TURN)]
@@ -81,7 +81,7 @@ def test_it_ends_after_so_many_without_a_gain_and_at_once_without_time_or_patien
     # A gain of less than a thousandth is none.
     small = Table({10.0: 9.995})
     assert len(_vary(small, [_result(float(n), 10.0) for n in range(1, 9)], 2 * TURN)) == 2 * TURN
-    assert _vary(Table({}), [_result(1.0, 10.0)], 2 * TURN, time.monotonic() - 1.0) == []
+    assert _vary(Table({}), [_result(1.0, 10.0)], 2 * TURN, Deadline.after(-1.0)) == []
     assert _vary(Table({}), [_result(1.0, 10.0)], 0) == []
 
 

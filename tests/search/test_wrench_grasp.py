@@ -11,6 +11,7 @@ import pytest
 
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.crosscheck.energy import energy_books
@@ -38,7 +39,7 @@ def flat() -> tuple[Problem, RestToRestSpline, SolverResult]:
 
     scenario, spline = load_scenario("table5", FLAT), RestToRestSpline(20)
     problem = Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), spline.mesh())
-    deadline = np.inf
+    deadline = NEVER
     result = Banded(problem).solve(posture_starts(problem, 1, 0, deadline)[0].x, deadline=deadline)
     assert result.converged
     return problem, spline, result

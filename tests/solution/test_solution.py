@@ -284,11 +284,13 @@ def test_objective_is_the_weighted_sum_of_its_trapezoid_integrals(result: Result
     squares = {who: (result[f"{who}_tau"][:, moving[who]] ** 2).sum(axis=1) for who in ARMS}
     squares["acceleration"] = sum((a**2).sum(axis=1) for a in accelerations)
     squares["force"] = (result["grasp_force"] ** 2).sum(axis=(1, 2))
-    weights, total = result.scenario.objective, 0.0
+    objective, total = result.scenario.objective, 0.0
+    weights = {who: agent.weight for who, agent in result.scenario.agents.items()}
+    weights |= {"acceleration": objective.acceleration_weight, "force": objective.force_weight}
     for term, values in squares.items():
         integral = result.step * (values.sum() - (values[0] + values[-1]) / 2)
         assert result.data.attrs[f"objective_{term}"] == pytest.approx(integral, rel=1e-9)
-        total += getattr(weights, f"{term}_weight") * integral
+        total += weights[term] * integral
     assert result.data.attrs["objective"] == pytest.approx(total, rel=1e-9)
 
 

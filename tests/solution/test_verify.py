@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -51,7 +52,7 @@ def solve() -> Solve:
     scenario, spline = load_scenario("table5"), RestToRestSpline(N)
     team = Team.of(agents_of(scenario), object_of(scenario))
     problem = Problem(team, task_of(scenario), spline.mesh())
-    deadline = np.inf
+    deadline = NEVER
     start = posture_starts(problem, 1, 0, deadline)[0]
     result = Ipopt(problem).solve(start.x, deadline=deadline)
     assert result.converged
@@ -195,7 +196,7 @@ def test_a_solver_that_was_fed_a_wrong_robot_is_found_out(solve: Solve) -> None:
     human, robot, table = team.topologies
     wrong = replace(robot, entries=robot.entries * 1.01)
     fooled = replace(solve.problem, team=replace(team, topologies=(human, wrong, table)))
-    result = Ipopt(fooled).solve(solve.result.x, deadline=np.inf)
+    result = Ipopt(fooled).solve(solve.result.x, deadline=NEVER)
     verification = solve.verify(result)
     assert not verification.passed
     assert {"closure at the knots", "objective by Pinocchio"} <= _failed(verification)

@@ -20,23 +20,12 @@ import xarray as xr
 from liftopt.commands.cli import main
 from liftopt.errors import InputError
 from liftopt.storage import result_folder
+from liftopt.storage.dataset import to_xarray
 from liftopt.storage.reader import load_result
+from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.storage.writer import save
 
-CHEAP = ("solver.intervals=10", "solver.starts=1")
-FILES = 5  # three models, scenario.toml, solution.nc
-
-
-@pytest.fixture(scope="module")
-def kept(solved: Callable[..., Any]) -> Any:
-    """A solved lift and its folder."""
-    return solved("table5", *CHEAP)
-
-
-@pytest.fixture
-def folder(kept: Any, tmp_path: Path) -> Path:
-    """A copy of the result that may be broken."""
-    return Path(shutil.copytree(kept.folder, tmp_path / "result"))
+FILES = 5  # solution.nc, scenario.toml and three models
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
@@ -86,13 +75,33 @@ def test_saving_again_replaces_the_older_result(kept: Any, solved: Callable[...,
     assert _contents(folder).keys() == _contents(kept.folder).keys()
 
 
-@pytest.mark.parametrize("at", range(FILES))
-@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()], ids=type)
-def test_failure_while_files_are_moved_leaves_the_older_result_whole(
-    at: int, error: BaseException, folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+INTERRUPTED = [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()]
+
+
+@pytest.mark.parametrize("error", INTERRUPTED, ids=type)
+def test_failure_before_the_one_rename_leaves_the_older_result_whole(
+    error: BaseException, folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     newer, before = solved("table5_near", "solver.starts=2").solution, _contents(folder)
-    replace, calls = os.replace, []
+
+    def failing(source: Path, target: Path) -> None:
+        assert target.name == "solution.nc"  # the first file to be moved, and the only one that counts
+        raise error
+
+    monkeypatch.setattr(os, "replace", failing)
+    for expected in (before, {}):
+        with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt):
+            save(newer, folder)
+        assert _contents(folder) == expected
+        shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("at", range(1, FILES))
+@pytest.mark.parametrize("error", INTERRUPTED, ids=type)
+def test_failure_after_the_one_rename_leaves_the_newer_result_whole(
+    at: int, error: BaseException, folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    newer, calls, replace = solved("table5_near", "solver.starts=2"), [], os.replace
 
     def failing(source: Path, target: Path) -> None:
         calls.append(target)
@@ -101,27 +110,25 @@ def test_failure_while_files_are_moved_leaves_the_older_result_whole(
         replace(source, target)
 
     monkeypatch.setattr(os, "replace", failing)
-    with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt):
-        save(newer, folder)
-    assert calls[-1].name == "solution.nc" or len(calls) < FILES
-    assert _contents(folder) == before
-    shutil.rmtree(folder)
-    calls.clear()
-    with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt):
-        save(newer, folder)
-    assert _contents(folder) == {}
+    with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt) as caught:
+        save(newer.solution, folder)
+    if isinstance(error, OSError):
+        left = calls[-1].relative_to(folder)
+        assert str(caught.value).endswith(f"No space left on device (solution.nc is written, {left} beside it is not)")
+    _same(load_result(folder), newer.solution)
+    assert scenario_or_solved(folder) == newer.solution.scenario
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
 
 
-@pytest.mark.parametrize("stage", ["_write", "_keep"])
 def test_full_disk_while_writing_leaves_the_older_result_whole(
-    stage: str, folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+    folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = _contents(folder)
 
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(result_folder, stage, full)
+    monkeypatch.setattr(result_folder, "_write", full)
     with pytest.raises(InputError, match=r"--out = .*: cannot be written: No space left on device"):
         save(solved("table5_near", "solver.starts=2").solution, folder)
     assert _contents(folder) == before
@@ -171,18 +178,14 @@ def _other_netcdf(folder: Path) -> None:
         file.create_variable("temperature", ("x",), data=np.zeros(3))
 
 
-def _other_scenario(folder: Path) -> None:
-    (folder / "scenario.toml").write_text("schema = 1\n")
-
-
 def _spoiled(name: str, value: float) -> Callable[[Path], None]:
     """Let the last value of a variable be another."""
     return _edit(lambda file: file[name].__setitem__(tuple(size - 1 for size in file[name].shape), value))
 
 
-def _model(name: str, change: Callable[[str], str]) -> Callable[[Path], object]:
-    """Change the text of a model."""
-    return lambda folder: (folder / "models" / name).write_text(change((folder / "models" / name).read_text()))
+def _text(name: str, change: Callable[[str], str]) -> Callable[[Path], None]:
+    """Change a text attribute."""
+    return _edit(lambda file: file.attrs.__setitem__(name, change(str(file.attrs[name]))))
 
 
 READ, WHOLE = "solution.nc: cannot be read as NetCDF-4", "solution.nc: is no whole result of liftopt"
@@ -206,16 +209,17 @@ BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "a force is infinite": (_spoiled("grasp_force", -np.inf), "grasp_force holds values that are not finite"),
     "time is NaN": (_spoiled("time", np.nan), "time holds values that are not finite"),
     "time turns back": (_spoiled("time", 0.0), "time does not increase"),
-    "no models": (lambda folder: shutil.rmtree(folder / "models"), "models/human_arm.urdf: cannot be read"),
-    "a model is gone": (lambda folder: (folder / "models" / "table.urdf").unlink(), "table.urdf: cannot be read"),
-    "a model is empty": (_model("table.urdf", lambda text: ""), "is a model that cannot be read"),
-    "a model is cut": (_model("sawyer.urdf", lambda text: text[:2000]), "is a model that cannot be read"),
+    "a model is gone": (_without_attribute("urdf_table"), "the model of table cannot be read"),
+    "a model is empty": (_text("urdf_table", lambda text: ""), "the model of table cannot be read"),
+    "a model is a number": (_with_attribute("urdf_table", 7), "the model of table cannot be read"),
+    "a model is cut": (_text("urdf_robot", lambda text: text[:2000]), "the model of robot cannot be read"),
     "a model of fewer joints": (
-        _model("human_arm.urdf", lambda text: text.replace('type="revolute"', 'type="fixed"')),
+        _text("urdf_human", lambda text: text.replace('type="revolute"', 'type="fixed"')),
         "it has no joint human_Q1 (3 joints, not 13)",
     ),
-    "no scenario": (lambda folder: (folder / "scenario.toml").unlink(), "scenario.toml: no such file"),
-    "another scenario": (_other_scenario, "duration: is missing"),
+    "another scenario": (_text("scenario", lambda text: "schema = 1\n"), "duration: is missing"),
+    "a scenario that is none": (_text("scenario", lambda text: "schema"), "holds a scenario that cannot be read"),
+    "a scenario that is a number": (_with_attribute("scenario", 7), "holds a scenario that cannot be read"),
 }
 
 
@@ -228,7 +232,31 @@ def test_a_broken_result_is_one_input_error_that_names_the_file(case: str, folde
     message = str(caught.value)
     assert words in message
     assert "\n" not in message
-    assert str(folder) in message or case == "another scenario"
+    assert str(folder / "solution.nc") in message or case == "gone"
+
+
+def test_nothing_reads_back_what_stands_beside_the_result(kept: Any, folder: Path) -> None:
+    (folder / "scenario.toml").write_text("schema = 1\n")
+    (folder / "models" / "sawyer.urdf").write_text("no model")
+    (folder / "models" / "table.urdf").unlink()
+    _same(load_result(folder), kept.solution)
+    assert scenario_or_solved(folder) == kept.solution.scenario
+    shutil.rmtree(folder / "models")
+    (folder / "scenario.toml").unlink()
+    moved = folder.rename(folder.parent / "moved") / "solution.nc"
+    _same(load_result(moved), kept.solution)
+    assert scenario_or_solved(moved) == kept.solution.scenario
+
+
+def test_the_file_is_the_dataset_and_the_dataset_is_the_file(kept: Any) -> None:
+    file = xr.load_dataset(kept.folder / "solution.nc", engine="h5netcdf")
+    xr.testing.assert_identical(to_xarray(kept.solution), file)
+    assert all({"units", "long_name"} <= set(file[name].attrs) for name in file.variables)
+
+
+def test_the_same_answer_makes_the_same_bytes(kept: Any, tmp_path: Path) -> None:
+    save(kept.solution, tmp_path / "again")
+    assert _contents(tmp_path / "again") == _contents(kept.folder)
 
 
 @pytest.mark.parametrize("path", ["nowhere", "nowhere/solution.nc", "nowhere.nc", "."])

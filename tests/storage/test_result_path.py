@@ -95,8 +95,8 @@ def test_what_is_no_result_is_told_with_what_was_meant(path: str, said: str) -> 
         ("lab", "did you mean lab.toml?"),
         ("lab.tml", "did you mean lab.toml?"),
         ("results/tabel5", "did you mean results/table5 or table5?"),
-        ("results", "nor a result folder with a scenario.toml; did you mean results/table5?"),
-        ("empty", "is not a file, nor a result folder with a scenario.toml"),
+        ("results", "nor a result folder with a solution.nc; did you mean results/table5?"),
+        ("empty", "is not a file, nor a result folder with a solution.nc"),
         ("nowhere/x.toml", "no such file, nor a shipped scenario (table5, table5_free, table5_near)"),
     ],
 )
@@ -106,12 +106,6 @@ def test_what_is_no_scenario_is_told_with_what_was_meant(path: str, said: str) -
         scenario_or_solved(path)
     assert str(caught.value).startswith(f"{path}: ")
     assert str(caught.value).endswith(said)
-
-
-def test_a_netcdf_file_without_its_scenario_says_so(results: Path) -> None:
-    shutil.copy(results / "table5" / "solution.nc", "moved.nc")
-    with pytest.raises(InputError, match=r"^scenario\.toml: no such file; a result has one beside its solution\.nc$"):
-        load_result("moved.nc")
 
 
 def test_a_result_folder_is_no_command(results: Path, capsys: pytest.CaptureFixture[str]) -> None:

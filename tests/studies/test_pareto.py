@@ -15,7 +15,7 @@ from matplotlib import rc_context
 from liftopt.commands.cli import main
 from liftopt.commands.pareto import front_dict, table
 from liftopt.scenario.model import Scenario, load_scenario
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 from liftopt.studies.pareto import Front, pareto_front, ratio_text, weights_at
 from liftopt.viz.plots_pareto import pareto_figure
 from liftopt.viz.plots_style import STYLE
@@ -61,7 +61,7 @@ def test_no_point_of_the_front_is_beaten_and_the_weights_are_obeyed(front: Front
 def test_points_are_no_worse_than_the_lift_solved_by_itself(front: Front, scenario: Scenario) -> None:
     """At the scenario's own weights, from the same starts and from both neighbours."""
     middle = next(p for p in front.points + front.dominated if p.weights[0] == pytest.approx(1.0))
-    assert middle.candidate.result.objective <= lift(scenario).objective * (1 + 1e-6)
+    assert middle.candidate.result.objective <= solve(scenario).objective * (1 + 1e-6)
 
 
 def test_no_motion_of_another_point_is_better_for_a_points_weights(front: Front) -> None:
@@ -79,7 +79,7 @@ def test_all_points_stand_on_one_mesh_where_one_takes_a_finer_one() -> None:
     found = pareto_front(coarse, 2)
     (intervals,) = {point.candidate.spline.intervals for point in found.points}
     assert intervals in (16, 32)
-    assert lift(coarse).intervals in (16, 32)
+    assert solve(coarse).intervals in (16, 32)
 
 
 def test_weights_keep_their_sum_and_ratio() -> None:

@@ -20,7 +20,7 @@ from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 from liftopt.solution.summary import limit_share
 from liftopt.studies.sensitivity import Parameter, Study, changed, figures, parameters_of, study
 
@@ -145,7 +145,7 @@ def test_the_table_of_a_shipped_scenario_is_usable(name: str, capsys: pytest.Cap
         assert row["reliable"] is (row["doubt"] is None)
         assert row["change"] <= usual[row["name"]]
         assert (row["change"] < usual[row["name"]]) <= (row["not_larger_because"] is not None)
-    for joint, agent in zip(found["busiest"], lift(load_scenario(name)).agents, strict=True):
+    for joint, agent in zip(found["busiest"], solve(load_scenario(name)).agents, strict=True):
         most = limit_share(agent).max(axis=0)
         assert joint == [agent.joint_names[j] for j in np.flatnonzero(agent.moving)][int(most.argmax())]
 

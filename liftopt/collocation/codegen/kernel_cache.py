@@ -1,9 +1,9 @@
-"""Where compiled libraries are kept: inside the package as it was installed, or in the user's cache folder.
+"""The kernel cache: compiled kernels, inside the package as it was installed, or in the user's cache folder.
 
-A library is found by its key, a digest of all that it is made from. It carries the digest of its own bytes, appears by
-renaming, whole or not at all, and is looked at only where nobody but its owner can write: the user's own cache, and
-the package itself, whose folder is trusted as far as its code is. The package comes first; what was installed with it
-needs no folder of the user's.
+A kernel is found by its key, a digest of all that it is made from. Its file carries the checksum of its own bytes and
+appears by renaming, whole or not at all. It is loaded only from where nobody but its owner can write: the user's own
+cache, and the package itself, whose folder is trusted as far as its code is. The package comes first; what was
+installed with it needs no folder of the user's.
 
 Between the look and the loading nobody else can put another file in its place: a cache folder is held open, and its
 files are reached through it rather than by its path, which may lead through folders where others can rename things.
@@ -23,7 +23,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TypeVar
 
-from liftopt.files.checksum import is_sealed, sealed
+from liftopt.files.checksum import has_checksum, with_checksum
 
 # What no run has loaded for this long goes when something new is compiled: versions that are no longer installed.
 UNUSED_DAYS = 90.0
@@ -44,7 +44,7 @@ def find_library(key: str, open_library: Callable[[Path], Opened | None]) -> Ope
     shipped, cache = PACKAGE / "kernels" / f"{key}.so", cache_folder()
     if (opened := _open(shipped, open_library, PACKAGE)) is not None or cache is None:
         return opened
-    with _held(cache) as folder:
+    with _kept_open(cache) as folder:
         opened = _open_private(folder / f"{key}.so", open_library)
         if opened is not None:
             with suppress(OSError):
@@ -70,29 +70,30 @@ def cache_folder() -> Path | None:
 
 
 def keep(built: Path, folder: Path | None, open_library: Callable[[Path], Opened | None]) -> Opened | None:
-    """Seal a library just built, move it to ``folder`` if there is one, and return what ``open_library`` makes of it.
+    """Give a library just built its checksum, move it to ``folder`` if there is one, and open it there.
 
-    Where it cannot be kept it is opened where it was built; it stays mapped when that file goes.
+    Returns what ``open_library`` makes of it. Where it cannot be kept it is opened where it was built; it stays mapped
+    when that file goes.
     """
-    _seal(built)
+    _add_checksum(built)
     if folder is None:
         return _open(built, open_library)
-    with _held(folder) as held:
-        _drop_unused(held)
-        return _open_private(_publish(built, held / built.name), open_library)
+    with _kept_open(folder) as own:
+        _drop_unused(own)
+        return _open_private(_publish(built, own / built.name), open_library)
 
 
 @contextmanager
-def _held(folder: Path) -> Iterator[Path]:
+def _kept_open(folder: Path) -> Iterator[Path]:
     """Hold a folder open and give a path that stays this very folder, whatever is renamed on the way to it."""
     try:
         descriptor = os.open(folder, os.O_RDONLY)
     except OSError:  # it is gone, or this system opens no folders
         yield folder
         return
-    held = Path(f"/proc/self/fd/{descriptor}")
+    own = Path(f"/proc/self/fd/{descriptor}")
     try:
-        yield held if held.exists() else folder
+        yield own if own.exists() else folder
     finally:
         os.close(descriptor)
 
@@ -108,7 +109,7 @@ def _open_private(path: Path, open_library: Callable[[Path], Opened | None]) -> 
 
 def _open(path: Path, open_library: Callable[[Path], Opened | None], owner: Path | None = None) -> Opened | None:
     try:
-        return open_library(path) if _is_trusted(path, owner) and _is_sealed(path) else None
+        return open_library(path) if _is_trusted(path, owner) and _has_checksum(path) else None
     except OSError:
         return None
 
@@ -122,14 +123,14 @@ def _is_trusted(path: Path, owner: Path | None = None) -> bool:
     return status.st_uid == of[0] and not status.st_mode & OTHERS_WRITE & ~of[1]
 
 
-def _is_sealed(path: Path) -> bool:
-    return is_sealed(path.read_bytes())
+def _has_checksum(path: Path) -> bool:
+    return has_checksum(path.read_bytes())
 
 
-def _seal(path: Path) -> None:
-    """Append the seal, which a loader of shared libraries ignores, and make the file private."""
+def _add_checksum(path: Path) -> None:
+    """Append the checksum, which a loader of shared libraries ignores, and make the file private."""
     path.chmod(0o600)
-    path.write_bytes(sealed(path.read_bytes()))
+    path.write_bytes(with_checksum(path.read_bytes()))
 
 
 def _publish(built: Path, target: Path) -> Path:
@@ -149,11 +150,11 @@ def _publish(built: Path, target: Path) -> Path:
 
 
 def _drop_unused(folder: Path) -> None:
-    """Remove the libraries in a cache folder that no run has loaded for long; other files are nobody's business."""
+    """Remove the libraries in a cache folder that no run has loaded for long; other files stay."""
     before = time.time() - 86400.0 * UNUSED_DAYS
     with suppress(OSError):
         for path in folder.iterdir():
             # Another process may have removed it meanwhile, or be loading it: then it compiles it again.
             with suppress(OSError):
-                if LIBRARY_NAME.fullmatch(path.name) and path.stat().st_mtime < before and _is_sealed(path):
+                if LIBRARY_NAME.fullmatch(path.name) and path.stat().st_mtime < before and _has_checksum(path):
                     path.unlink()

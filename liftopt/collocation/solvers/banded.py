@@ -9,13 +9,11 @@ restoration phase: from a start that is too far away it may give up where IPOPT 
 at the knots (``knot_assembly.hpp``): a product with the Jacobian or the Hessian interpolates to the knots and back, and
 the condensed matrix is summed in two stages.
 
-What exists was tried on a prototype of this problem and does not serve: FATROP took 27 ms a search direction and did
-not converge, IPOPT with SPRAL 47 ms an iteration, and one quadratic programme by PIQP 43 ms, by OSQP 295 ms.
+What exists was tried on a prototype of this problem and does not serve (docs/tuning.md).
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +23,7 @@ import numpy.typing as npt
 from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, kernels_for_simd
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import PRUNED, STOPPED, Multipliers, SolverResult
 from liftopt.errors import SolverError
 
@@ -32,22 +31,19 @@ Array = npt.NDArray[np.float64]
 # The verification recomputes the same error by Pinocchio, whose rounding differs: what converged must stay so there.
 SAFETY = 0.9
 SOLVED = "Solve_Succeeded"
-# Of those tried on 60 lifts (barrier parameters of 0.1 to 10, 0.1 to 10 % of the room to a bound, objective scalings of
-# 0.03 to 0.3) these take the fewest factorisations on 10 intervals and nearly the fewest on 20, from posture pairs. On
-# finer meshes, which have more bounds, a smaller barrier parameter does: of 7 lifts 32 iterations instead of 47 on 80.
-# So it falls with the square of the intervals.
+# From posture pairs these take the fewest factorisations of those tried (docs/tuning.md). Finer meshes have more
+# bounds, and a smaller barrier parameter is better there: it falls with the square of the intervals.
 COLD = dict(mu=0.6, push=3e-2)
 MU_INTERVALS = 20
 # A warm start is near the solution: this barrier parameter and this share of the room to the bounds keep it there, and
 # whole Newton steps to begin with find the bounds that become active.
 WARM = dict(mu=1e-5, push=1e-4, predictions=2)
-# From another mesh, where the active bounds differ more: on widely varied lifts, from 10 to 20 intervals, 37 iterations
-# instead of 45. From 1e-3 on some went to another motion. On finer meshes it falls as that of a cold start does: of 9
-# lifts from 80 to 160 intervals 10 iterations instead of 16.
+# From another mesh, where the active bounds differ more; much larger ones lead to other motions. On finer meshes it
+# falls as that of a cold start does.
 INTERPOLATED = WARM | dict(mu=1e-4)
-# Iterations after which a start gives up that has a rival: so many, or so many times what the rival took; more where
-# that has not converged. Of 544 starts of widely varied lifts that converged, half took 43 and 90 % took 112.
-PATIENCE, PATIENCE_SHARE, LONGER = 60, 2, 100
+# Iterations after which a start with an incumbent gives up: so many, or so many times what the incumbent took; more
+# where that has not converged.
+PRUNING_ITERATIONS, PRUNING_SHARE, LONGER = 60, 2, 100
 
 
 @dataclass(frozen=True)
@@ -73,7 +69,7 @@ class Banded:
     def __init__(
         self, problem: Problem, options: BandedOptions | None = None, progress: Progress | None = None
     ) -> None:
-        """Build the solver; ``say`` hears of it when kernels must be compiled first.
+        """Build the solver; ``progress`` hears of it when kernels must be compiled first.
 
         Raises:
             SolverError: the extension is not installed, or the problem does not have the form it takes.
@@ -104,7 +100,7 @@ class Banded:
         self,
         x0: Array,
         *,
-        deadline: float,
+        deadline: Deadline,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         incumbent: SolverResult | None = None,
@@ -116,8 +112,8 @@ class Banded:
         most = self.options.max_iterations if most is None else min(most, self.options.max_iterations)
         more: dict[str, Any] = {"max_iterations": most}
         if incumbent is not None:
-            patience = min(most, self._patience(incumbent))
-            more = {"rival": incumbent.objective if incumbent.converged else np.inf, "max_iterations": patience}
+            fewer = min(most, self._most_with(incumbent))
+            more = {"rival": incumbent.objective if incumbent.converged else np.inf, "max_iterations": fewer}
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
@@ -142,11 +138,11 @@ class Banded:
             evaluation_seconds=found["evaluation_seconds"],
         )
 
-    def _patience(self, incumbent: SolverResult) -> int:
-        """Return how many iterations a start gets that has a rival."""
-        return max(PATIENCE, PATIENCE_SHARE * incumbent.iterations) if incumbent.converged else LONGER
+    def _most_with(self, incumbent: SolverResult) -> int:
+        """Return how many iterations a start with an incumbent gets."""
+        return max(PRUNING_ITERATIONS, PRUNING_SHARE * incumbent.iterations) if incumbent.converged else LONGER
 
-    def _run(self, x0: Array, problem: Problem, deadline: float, arguments: dict[str, Any]) -> dict[str, Any]:
+    def _run(self, x0: Array, problem: Problem, deadline: Deadline, arguments: dict[str, Any]) -> dict[str, Any]:
         lower, upper = problem.bounds()
         constraints, options = problem.constraints, self.options
         found: dict[str, Any] = self._solver.solve(
@@ -158,7 +154,7 @@ class Banded:
             tolerance=SAFETY * options.tolerance,
             rough=options.rough,
             objective_scaling=options.objective_scaling,
-            seconds=deadline - time.monotonic(),
+            seconds=deadline.left,
             **arguments,
         )
         return found

@@ -1,4 +1,4 @@
-"""A lift as the extension ``_liftopt_banded`` takes it: from wide kernels, or through Python without them."""
+"""A lift as the extension ``_liftopt_banded`` takes it: from SIMD kernels, or through Python without them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def kernels_for_simd(problem: Problem, progress: Progress | None = None) -> list
 
 
 def kernel_nlp(module: Any, problem: Problem, kernels: list[SimdKernel]) -> Any:
-    """Return the problem as the wide kernels evaluate it."""
+    """Return the problem as the SIMD kernels evaluate it."""
     layout, mesh = problem.layout, problem.mesh
     return module.KernelNlp(
         lanes=kernels[0].lanes,

@@ -18,18 +18,16 @@ import numpy.typing as npt
 from liftopt.collocation.assembly import Nlp
 from liftopt.collocation.codegen.simd_kernels import SimdKernel
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
-from liftopt.collocation.solvers.simd_nlp import wide_nlp
+from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.errors import SolverError
 
 Array = npt.NDArray[np.float64]
 # IPOPT measures errors of the scaled objective and relaxes them by averages over other multipliers than we do. With
-# this factor the KKT error stayed below 5e-7 for a tolerance of 1e-6 on 38 cold and 100 warm solves; 0.1 costs two
-# iterations of ten on warm ones.
+# this factor the KKT error stays below the tolerance; a smaller one costs iterations (docs/tuning.md).
 SAFETY = 0.5
-# A warm start is near the solution: over 100 mixes of small changes it took 8 iterations in the median and 12 at most
-# with these. On ten of them mu 1e-5 took 12 at most where this took 11, 1e-4 14 and 1e-3 16; pushes from 1e-4 to 1e-9
-# made no difference.
+# A warm start is near the solution: a larger mu takes more iterations (docs/tuning.md).
 WARM_MU, WARM_PUSH = 1e-6, 1e-5
 # What converges at all from a warm start takes a third of these iterations; then a cold start is quicker.
 WARM_ITERATIONS = 40
@@ -77,13 +75,13 @@ class Ipopt:
         self,
         x0: Array,
         *,
-        deadline: float,
+        deadline: Deadline,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         incumbent: SolverResult | None = None,
         most: int | None = None,
     ) -> SolverResult:
-        """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration; a rival changes nothing.
+        """Solve from ``x0``; see ``Solver.solve``. A Ctrl-C acts at the next iteration; an incumbent changes nothing.
 
         Where a warm start does not converge, a cold one from ``x0`` follows, and the status says so.
         """
@@ -106,14 +104,14 @@ class Ipopt:
             evaluation_seconds=first.evaluation_seconds + second.evaluation_seconds,
         )
 
-    def _run(self, x0: Array, deadline: float, warm: Multipliers | None, problem: Problem) -> SolverResult:
+    def _run(self, x0: Array, deadline: Deadline, warm: Multipliers | None, problem: Problem) -> SolverResult:
         solver, constraints = self._solver(warm is not None), problem.constraints
         lower, upper = problem.bounds()
         arguments = dict(x0=x0, p=problem.parameters, lbx=lower, ubx=upper)
         arguments |= dict(lbg=constraints.lower, ubg=constraints.upper)
         if warm is not None:
             arguments |= dict(lam_x0=warm.x, lam_g0=warm.g)
-        self._stop.at, self._stop.iterations = deadline, 0
+        self._stop.deadline, self._stop.interrupted, self._stop.iterations = deadline, False, 0
         began = time.perf_counter()
         try:
             with _interruptible(self._stop):
@@ -135,7 +133,7 @@ class Ipopt:
 
     @cached_property
     def _nlp(self) -> Nlp:
-        return self.problem.nlp if self._simd is None else wide_nlp(self.problem, self._simd)
+        return self.problem.nlp if self._simd is None else simd_nlp(self.problem, self._simd)
 
     def _solver(self, warm: bool) -> Any:
         if warm not in self._solvers:
@@ -154,11 +152,10 @@ class Ipopt:
             max_iter=options.max_iterations,
             nlp_scaling_method="none",
             obj_scaling_factor=options.objective_scaling,
-            # Relaxed bounds leave complementarity errors of the relaxation times the multiplier, which reached 2e4.
+            # Relaxed bounds leave complementarity errors of the relaxation times the multiplier, which may be large.
             bound_relax_factor=1e-12,
-            # On Table 5 MUMPS' own scaling and ordering take 1.3 and 1.2 times as long as none and AMD. Its pivoting
-            # test of 1e-6 delays pivots that do no harm: 0.9 of the time at the same iterates. Where a solution of
-            # the linear system turns out bad, IPOPT asks for a stricter test by itself.
+            # MUMPS' own scaling and ordering take longer than none and AMD, and its usual pivoting test delays pivots
+            # that do no harm. Where a solution of the linear system turns out bad, IPOPT asks for a stricter test.
             mumps_permuting_scaling=0,
             mumps_scaling=0,
             mumps_pivot_order=0,
@@ -206,7 +203,7 @@ def _interruptible(stop: _Stop) -> Iterator[None]:
 
     def note(*_: object) -> None:
         interrupted.append(True)
-        stop.at = -float("inf")
+        stop.interrupted = True
 
     signal.signal(signal.SIGINT, note)
     try:
@@ -222,7 +219,7 @@ class _Stop(ca.Callback):
 
     def __init__(self, n_x: int, n_g: int, n_p: int) -> None:
         ca.Callback.__init__(self)
-        self.at = float("inf")
+        self.deadline, self.interrupted = NEVER, False
         self.most: int | None = None
         self.iterations = 0
         self._sizes = {"x": n_x, "f": 1, "g": n_g, "lam_x": n_x, "lam_g": n_g, "lam_p": n_p}
@@ -253,5 +250,5 @@ class _Stop(ca.Callback):
 
     def eval_buffer(self, _: Any, results: Any) -> int:
         self.iterations += 1  # the first call is at the start
-        np.frombuffer(results[0])[0] = self.exhausted or time.monotonic() > self.at
+        np.frombuffer(results[0])[0] = self.exhausted or self.interrupted or self.deadline.passed
         return 0

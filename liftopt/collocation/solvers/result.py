@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import Deadline
 
 Array = npt.NDArray[np.float64]
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
-# Of a solver that was given a rival: no failure, but not worth going on.
+# Of a solver that was given an incumbent: no failure, but not worth going on.
 PRUNED = "Worse_Than_Rival"
 
 
@@ -64,7 +65,7 @@ class Solver(Protocol):
         self,
         x0: Array,
         *,
-        deadline: float,
+        deadline: Deadline,
         warm: Multipliers | None = None,
         problem: Problem | None = None,
         incumbent: SolverResult | None = None,
@@ -74,7 +75,7 @@ class Solver(Protocol):
 
         Args:
             x0: (n_x,) start.
-            deadline: ``time.monotonic`` value past which the solver stops.
+            deadline: past which the solver stops.
             warm: multipliers of a neighbouring solution to start from.
             problem: another problem of the same structure, for its bounds and parameters; None: the bound one.
             incumbent: where another start led. Where nothing lower is in sight the solver may give up (``PRUNED``), or

@@ -29,8 +29,8 @@ ALIGNMENT = 64
 _KERNEL = ctypes.CFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 4, ctypes.c_int)
 
 
-def wide_nlp(problem: Problem, kernels: Sequence[SimdKernel]) -> Nlp:
-    """Return the problem's NLP as callbacks on wide kernels; they share arrays, so one thread at a time may call."""
+def simd_nlp(problem: Problem, kernels: Sequence[SimdKernel]) -> Nlp:
+    """Return the problem's NLP as callbacks on SIMD kernels; they share arrays, so one thread at a time may call."""
     knots = _Knots(problem, kernels)
     dense = ca.Sparsity.dense
     x, p = dict(x=dense(problem.layout.n_x, 1)), dict(p=dense(knots.n_p, 1))
@@ -238,7 +238,7 @@ class _Knots:
 
 @dataclass(frozen=True)
 class _Interleaved:
-    """Where wide kernels hold entries: of each part (K n,), that of entry j of knot k at ``k n + j``, and the end."""
+    """Where SIMD kernels keep entries: of each part (K n,), that of entry j of knot k at ``k n + j``, and the end."""
 
     places: list[Index]
     end: int
@@ -297,6 +297,6 @@ def _aligned(size: int) -> Array:
 
 
 def _spread(places: Sequence[Index], end: int) -> sp.csr_matrix:
-    """Return the matrix (n, end) that picks entries knot by knot from where wide kernels hold them."""
+    """Return the matrix (n, end) that picks entries knot by knot from where SIMD kernels keep them."""
     at = np.concatenate(places)
     return sp.csr_matrix((np.ones(len(at)), at, np.arange(len(at) + 1)), shape=(len(at), end))

@@ -18,15 +18,12 @@ and by 16 to 51 mm in position_w_id mode, where they do: an order of magnitude.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.mujoco_model import import_mujoco, spec_of
 from liftopt.multibody.robots.sawyer import MOVING, NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name
-from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -57,9 +54,7 @@ class SimulatedArm:
         """
         self._mujoco = import_mujoco()
         moving = [joint_name(NAME, row) for row in MOVING]
-        file = urdf_files(solution.scenario)[NAME]
-        alone = replace(solution, urdfs={file: solution.urdfs[file]})
-        spec = spec_of(alone, [joint_name(NAME, row) for row in VIRTUAL])
+        spec = spec_of([solution.urdfs[NAME]], [joint_name(NAME, row) for row in VIRTUAL])
         limits = solution.agents[1].limits
         for j, name in enumerate(moving):
             servo = spec.add_actuator(name=name, target=name, trntype=self._mujoco.mjtTrn.mjTRN_JOINT)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from liftopt.collocation.codegen import kernel_cache as libraries
+from liftopt.collocation.codegen import kernel_cache
 from liftopt.collocation.codegen.kernel_cache import LIBRARY_NAME, UNUSED_DAYS, cache_folder, find_library, keep
 from liftopt.files.checksum import DIGEST_BYTES
 
@@ -19,7 +19,7 @@ needs_owners = pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners o
 @pytest.fixture
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return an installed package with an empty folder of kernels."""
-    monkeypatch.setattr(libraries, "PACKAGE", tmp_path / "package")
+    monkeypatch.setattr(kernel_cache, "PACKAGE", tmp_path / "package")
     (tmp_path / "package" / "kernels").mkdir(parents=True)
     (tmp_path / "package").chmod(0o755)
     return tmp_path / "package" / "kernels"
@@ -33,11 +33,11 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def put(folder: Path, content: str, key: str = KEY) -> Path:
-    """Put a sealed library into a folder."""
+    """Put a library with its checksum into a folder."""
     folder.mkdir(exist_ok=True)
     path = folder / f"{key}.so"
     path.write_text(content)
-    libraries._seal(path)
+    kernel_cache._add_checksum(path)
     return path
 
 

@@ -154,12 +154,12 @@ def foreign(path: Path) -> None:
     path.write_bytes(b"not a library" * 100)
 
 
-def unseal(path: Path) -> None:
+def without_checksum(path: Path) -> None:
     path.write_bytes(path.read_bytes()[:-DIGEST_BYTES])
 
 
 @needs_compiler
-@pytest.mark.parametrize("damage", [truncate, flip, empty, foreign, unseal])
+@pytest.mark.parametrize("damage", [truncate, flip, empty, foreign, without_checksum])
 def test_damaged_file_is_rebuilt_and_never_loaded(
     damage: Callable[[Path], None], cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -180,7 +180,7 @@ def test_damaged_file_is_rebuilt_and_never_loaded(
 
 
 @needs_compiler
-def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) -> None:
+def test_whole_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) -> None:
     """A library whose digest is right but that lacks the symbols, as a collision would leave."""
     source, path = tmp_path / "other.c", library(cache)
     source.write_text("int other(void) { return 0; }\n")
@@ -189,7 +189,7 @@ def test_sealed_file_of_other_functions_is_rebuilt(cache: Path, tmp_path: Path) 
     assert compiler is not None
     subprocess.run([*compiler, "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
     path.chmod(0o600)
-    kernel_cache._seal(path)
+    kernel_cache._add_checksum(path)
     assert_right(load_tiny())
 
 

@@ -217,8 +217,8 @@ def test_limits_and_bad_numbers_are_reported() -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_rival_stops_what_is_worse_and_changes_nothing_else(seed: int) -> None:
-    """The solve without a rival is the oracle; only where a problem is convex is it sure not to be given up."""
+def test_an_incumbent_stops_what_is_worse_and_changes_nothing_else(seed: int) -> None:
+    """The solve without an incumbent is the oracle; only where a problem is convex is it sure not to be given up."""
     for convex in (True, False):
         problem = random_problem(seed, convex)
         alone = problem.solve()

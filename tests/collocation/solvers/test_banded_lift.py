@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -14,6 +13,7 @@ from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions, elimination_order
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, knot_rows
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import Mesh, RestToRestSpline
@@ -23,7 +23,7 @@ from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.initial_guess import InitialGuess, PostureSolver, blend, naive_guess, seed_coordinates
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 
 extension = pytest.importorskip("_liftopt_banded")
 TOLERANCE = 1e-6
@@ -39,8 +39,8 @@ def posture_pair(problem: Problem) -> np.ndarray:
     postures, rng, task = PostureSolver(problem.team, problem.task), np.random.default_rng(0), problem.task
     for attempt in range(24):
         seed = seed_coordinates(problem, task.start, rng if attempt else None)
-        first = postures.solve(task.start, seed, np.inf)
-        last = first and postures.solve(task.end, first.coordinates, np.inf)
+        first = postures.solve(task.start, seed, NEVER)
+        last = first and postures.solve(task.end, first.coordinates, NEVER)
         if first and last:
             return blend(problem, first, last)
     raise AssertionError("no posture pair")
@@ -53,7 +53,7 @@ def banded(small_lift: Problem) -> Banded:
 
 @pytest.fixture(scope="session")
 def found(banded: Banded, starts: list[InitialGuess]) -> SolverResult:
-    return banded.solve(starts[0].x, deadline=np.inf)
+    return banded.solve(starts[0].x, deadline=NEVER)
 
 
 def test_small_lift_is_solved(found: SolverResult, small_lift: Problem, solved: SolverResult) -> None:
@@ -67,14 +67,14 @@ def test_small_lift_is_solved(found: SolverResult, small_lift: Problem, solved: 
 
 
 def test_ipopt_stays_at_its_solution(found: SolverResult, ipopt: Ipopt) -> None:
-    polished = ipopt.solve(found.x, deadline=np.inf, warm=found.multipliers)
+    polished = ipopt.solve(found.x, deadline=NEVER, warm=found.multipliers)
     assert polished.converged and polished.iterations <= 8
     np.testing.assert_allclose(polished.objective, found.objective, rtol=1e-6)
     np.testing.assert_allclose(polished.x, found.x, rtol=0, atol=5e-3)  # newtons and radians
 
 
 def test_it_stays_at_ipopts_solution(banded: Banded, solved: SolverResult) -> None:
-    again = banded.solve(solved.x, deadline=np.inf, warm=solved.multipliers)
+    again = banded.solve(solved.x, deadline=NEVER, warm=solved.multipliers)
     assert again.converged and again.iterations <= 8
     np.testing.assert_allclose(again.objective, solved.objective, rtol=1e-6)
 
@@ -84,7 +84,7 @@ def test_warm_start_of_a_neighbouring_task(
 ) -> None:
     task = make_task(agent_weights=(1.0, 1.0), duration=2.05)
     other = replace(small_lift, task=replace(task, end=task.end - np.array([0.0, 0.0, 0.02, 0.0, 0.0, 0.0])))
-    warm = banded.solve(found.x, deadline=np.inf, warm=found.multipliers, problem=other)
+    warm = banded.solve(found.x, deadline=NEVER, warm=found.multipliers, problem=other)
     assert warm.converged and warm.iterations <= found.iterations / 2
     assert kkt_error(other, warm.x, warm.multipliers).error <= TOLERANCE
 
@@ -94,15 +94,15 @@ def test_a_problem_with_other_rows_is_refused(
 ) -> None:
     other = replace(small_lift, task=make_task(agent_weights=(1.0, 1.0), max_grasp_force=50.0))
     with pytest.raises(SolverError, match="other constraint rows"):
-        banded.solve(starts[0].x, deadline=np.inf, problem=other)
+        banded.solve(starts[0].x, deadline=NEVER, problem=other)
 
 
 def test_limits_of_time_and_iterations_are_reported(
     small_lift: Problem, banded: Banded, starts: list[InitialGuess]
 ) -> None:
-    late = banded.solve(starts[0].x, deadline=time.monotonic() - 1.0)
+    late = banded.solve(starts[0].x, deadline=Deadline.after(-1.0))
     assert not late.converged and late.status == "User_Requested_Stop" and late.iterations == 0
-    few = Banded(small_lift, BandedOptions(max_iterations=3)).solve(starts[0].x, deadline=np.inf)
+    few = Banded(small_lift, BandedOptions(max_iterations=3)).solve(starts[0].x, deadline=NEVER)
     assert not few.converged and few.status == "Maximum_Iterations_Exceeded" and few.iterations == 3
 
 
@@ -111,7 +111,7 @@ def test_infeasible_task_is_not_called_solved(
 ) -> None:
     """A metre out of reach."""
     task = make_task(agent_weights=(1.0, 1.0), x=-1.5)
-    assert not banded.solve(starts[0].x, deadline=np.inf, problem=replace(small_lift, task=task)).converged
+    assert not banded.solve(starts[0].x, deadline=NEVER, problem=replace(small_lift, task=task)).converged
 
 
 def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., LiftTask]) -> None:
@@ -121,7 +121,7 @@ def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., Li
         patch.setenv("CC", "")
         patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
         banded = Banded(problem, BandedOptions(max_iterations=3))
-    result = banded.solve(naive_guess(problem).x, deadline=np.inf)
+    result = banded.solve(naive_guess(problem).x, deadline=NEVER)
     assert result.iterations == 3 and np.isfinite(result.objective)
 
 
@@ -130,7 +130,7 @@ def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Initia
 
     That is near an optimum: elsewhere the one leaves out curvature, which the other cannot tell from the rest.
     """
-    optimum = Banded(small_lift).solve(starts[0].x, deadline=np.inf)
+    optimum = Banded(small_lift).solve(starts[0].x, deadline=NEVER)
     assert optimum.converged
     near = optimum.x + 1e-5 * np.random.default_rng(0).standard_normal(len(optimum.x))
     options = BandedOptions(max_iterations=8)
@@ -138,7 +138,7 @@ def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[Initia
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("liftopt.collocation.solvers.banded.kernels_for_simd", lambda *_: None)
         slow = Banded(small_lift, options)
-    one, other = (solver.solve(near, deadline=np.inf, warm=optimum.multipliers) for solver in (simd, slow))
+    one, other = (solver.solve(near, deadline=NEVER, warm=optimum.multipliers) for solver in (simd, slow))
     assert one.converged and other.converged and abs(one.iterations - other.iterations) <= 1
     np.testing.assert_allclose(one.objective, other.objective, rtol=1e-9)
     np.testing.assert_allclose(one.x, other.x, rtol=0, atol=1e-5)
@@ -177,7 +177,7 @@ def test_linear_systems_of_a_fine_mesh_need_hardly_any_refinement() -> None:
     """Closure acts on positions, balance on accelerations: one penalty for both takes two each iteration."""
     problem = problem_of(load_scenario("table5"), 80)
     solver = Banded(problem)
-    result = solver.solve(posture_pair(problem), deadline=np.inf)
+    result = solver.solve(posture_pair(problem), deadline=NEVER)
     assert result.converged and kkt_error(problem, result.x, result.multipliers).error <= TOLERANCE
     assert solver.details["refinements"] < result.iterations
 
@@ -185,9 +185,7 @@ def test_linear_systems_of_a_fine_mesh_need_hardly_any_refinement() -> None:
 def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts: list[InitialGuess]) -> None:
     """Pinocchio: its KKT error is below the share of the objective that was asked for, its rows hold all the same."""
     share = 1e-4
-    exact, rough = (
-        Banded(small_lift, BandedOptions(rough=r)).solve(starts[0].x, deadline=np.inf) for r in (0.0, share)
-    )
+    exact, rough = (Banded(small_lift, BandedOptions(rough=r)).solve(starts[0].x, deadline=NEVER) for r in (0.0, share))
     assert exact.converged and rough.converged and rough.iterations < exact.iterations
     assert rough.objective == pytest.approx(exact.objective, rel=1e-2)
     assert TOLERANCE < kkt_error(small_lift, rough.x, rough.multipliers).error <= share * rough.objective
@@ -199,9 +197,9 @@ def test_a_rough_solve_stops_early_near_the_optimum(small_lift: Problem, starts:
 
 def test_far_from_a_solution_it_finds_one_where_ipopt_stays(small_lift: Problem, banded: Banded, ipopt: Ipopt) -> None:
     """From the naive start Newton's matrix is indefinite and curvature is left out; the end must not tell."""
-    found = banded.solve(naive_guess(small_lift).x, deadline=np.inf)
+    found = banded.solve(naive_guess(small_lift).x, deadline=NEVER)
     assert found.converged and kkt_error(small_lift, found.x, found.multipliers).error <= TOLERANCE
-    stays = ipopt.solve(found.x, deadline=np.inf, warm=found.multipliers)
+    stays = ipopt.solve(found.x, deadline=NEVER, warm=found.multipliers)
     assert stays.converged and stays.objective == pytest.approx(found.objective, rel=1e-6)
 
 
@@ -250,7 +248,7 @@ def test_kernels_need_no_assembled_problem(
 ) -> None:
     """Neither the solver nor a solution touches the functions that CasADi would assemble."""
     problem = Problem(team, make_task(agent_weights=(1.0, 1.0)), RestToRestSpline(12).mesh())
-    Banded(problem, BandedOptions(max_iterations=1)).solve(naive_guess(problem).x, deadline=np.inf)
+    Banded(problem, BandedOptions(max_iterations=1)).solve(naive_guess(problem).x, deadline=NEVER)
     assert "nlp" not in vars(problem)
 
 
@@ -260,7 +258,7 @@ def test_two_threads_solve_on_two_solvers(small_lift: Problem, found: SolverResu
 
     solvers = [Banded(small_lift), Banded(small_lift)]
     with ThreadPoolExecutor(2) as pool:
-        results = list(pool.map(lambda solver: solver.solve(starts[0].x, deadline=np.inf), solvers))
+        results = list(pool.map(lambda solver: solver.solve(starts[0].x, deadline=NEVER), solvers))
     for result in results:
         np.testing.assert_array_equal(result.x, found.x)
 
@@ -270,7 +268,7 @@ def test_shipped_scenarios(name: str) -> None:
     """N = 20 from one posture pair: verified KKT error, and an objective in the band of IPOPT's from the same start."""
     problem = problem_of(load_scenario(name))
     x = posture_pair(problem)
-    result, reference = Banded(problem).solve(x, deadline=np.inf), Ipopt(problem).solve(x, deadline=np.inf)
+    result, reference = Banded(problem).solve(x, deadline=NEVER), Ipopt(problem).solve(x, deadline=NEVER)
     assert result.converged and kkt_error(problem, result.x, result.multipliers).error <= TOLERANCE
     assert result.objective <= 1.3 * reference.objective
 
@@ -286,7 +284,7 @@ def test_varied_scenarios_at_the_first_try() -> None:
         changes = {key: round(rng.uniform(*bounds), 3) for key, bounds in ranges.items()}
         problem = problem_of(base.replace(changes))
         banded = banded or Banded(problem)
-        result = banded.solve(posture_pair(problem), deadline=np.inf, problem=problem)
+        result = banded.solve(posture_pair(problem), deadline=NEVER, problem=problem)
         if not result.converged or kkt_error(problem, result.x, result.multipliers).error > TOLERANCE:
             failed.append((changes, result.status))
     assert len(failed) <= 1, failed
@@ -294,14 +292,14 @@ def test_varied_scenarios_at_the_first_try() -> None:
 
 def test_ipopt_takes_over_where_it_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """The record and the progress say so, and the solution is IPOPT's, verified."""
-    solve = Banded.solve
+    own_solve = Banded.solve
 
     def fail(self: Banded, *args: Any, **options: Any) -> SolverResult:
-        return replace(solve(self, *args, **options), converged=False, status="Line_Search_Failed")
+        return replace(own_solve(self, *args, **options), converged=False, status="Line_Search_Failed")
 
     monkeypatch.setattr(Banded, "solve", fail)
     lines: list[str] = []
     scenario = load_scenario("table5").replace({"solver.name": "banded", "solver.starts": 2, "solver.intervals": 16})
-    solution = lift(scenario, progress=lines.append)
+    solution = solve(scenario, progress=lines.append)
     assert solution.verification.passed and any("IPOPT takes over" in line for line in lines)
     assert {start.status for start in solution.starts[:2]} == {"converged (IPOPT, after banded: Line_Search_Failed)"}

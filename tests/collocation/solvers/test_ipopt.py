@@ -12,6 +12,7 @@ import pytest
 
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -74,20 +75,20 @@ def test_deadline_in_the_past_stops_at_once(ipopt: Ipopt, starts: list[InitialGu
 
 def test_solver_goes_on_after_a_stop(ipopt: Ipopt, starts: list[InitialGuess], solved: SolverResult) -> None:
     """A stop leaves nothing behind: the same start gives the same result as before."""
-    ipopt.solve(starts[0].x, deadline=time.monotonic() - 1.0)
-    again = ipopt.solve(starts[0].x, deadline=np.inf)
+    ipopt.solve(starts[0].x, deadline=Deadline.after(-1.0))
+    again = ipopt.solve(starts[0].x, deadline=NEVER)
     assert again.converged
     np.testing.assert_array_equal(again.x, solved.x)
 
 
 def test_iteration_limit_is_reported(small_lift: Problem, starts: list[InitialGuess]) -> None:
-    result = Ipopt(small_lift, IpoptOptions(max_iterations=3)).solve(starts[0].x, deadline=np.inf)
+    result = Ipopt(small_lift, IpoptOptions(max_iterations=3)).solve(starts[0].x, deadline=NEVER)
     assert not result.converged and result.status == "Maximum_Iterations_Exceeded" and result.iterations == 3
 
 
 def test_warm_start_from_the_solution_is_quick(ipopt: Ipopt, solved: SolverResult, small_lift: Problem) -> None:
     """From the solution with its multipliers: a fraction of the iterations, the same point by its KKT error."""
-    warm = ipopt.solve(solved.x, deadline=np.inf, warm=solved.multipliers)
+    warm = ipopt.solve(solved.x, deadline=NEVER, warm=solved.multipliers)
     assert warm.converged and warm.iterations <= 8 and warm.iterations < solved.iterations / 2
     np.testing.assert_allclose(warm.objective, solved.objective, rtol=1e-6)
     assert kkt_error(small_lift, warm.x, warm.multipliers).error <= 1e-6
@@ -99,7 +100,7 @@ def test_warm_start_of_a_neighbouring_task(
     """Another period and end height through parameters and bounds alone, judged as the problem it is."""
     task = make_task(agent_weights=(1.0, 1.0), duration=2.05)
     other = replace(small_lift, task=replace(task, end=task.end - np.array([0.0, 0.0, 0.02, 0.0, 0.0, 0.0])))
-    found = ipopt.solve(solved.x, deadline=np.inf, warm=solved.multipliers, problem=other)
+    found = ipopt.solve(solved.x, deadline=NEVER, warm=solved.multipliers, problem=other)
     assert found.converged and found.iterations < solved.iterations
     assert kkt_error(other, found.x, found.multipliers).error <= 1e-6
 
@@ -111,7 +112,7 @@ def test_a_warm_start_that_fails_becomes_a_cold_one(
     warmed = Ipopt(ipopt.problem)
     monkeypatch.setattr("liftopt.collocation.solvers.ipopt.WARM_ITERATIONS", 2)
     nothing = Multipliers(np.zeros_like(solved.multipliers.x), np.zeros_like(solved.multipliers.g))
-    found = warmed.solve(starts[0].x, deadline=np.inf, warm=nothing)
+    found = warmed.solve(starts[0].x, deadline=NEVER, warm=nothing)
     assert found.converged
     assert found.status == "Solve_Succeeded (cold, after warm: Maximum_Iterations_Exceeded)"
     assert found.iterations == solved.iterations + 2
@@ -121,7 +122,7 @@ def test_a_warm_start_that_fails_becomes_a_cold_one(
 def test_a_warm_start_past_its_deadline_stays_stopped(
     ipopt: Ipopt, starts: list[InitialGuess], solved: SolverResult
 ) -> None:
-    found = ipopt.solve(starts[0].x, deadline=time.monotonic() - 1.0, warm=solved.multipliers)
+    found = ipopt.solve(starts[0].x, deadline=Deadline.after(-1.0), warm=solved.multipliers)
     assert not found.converged and found.status == STOPPED
 
 
@@ -133,13 +134,13 @@ def test_a_problem_with_other_rows_is_refused(
     peak = float(np.linalg.norm(force.reshape(-1, 3), axis=1).max())
     other = replace(small_lift, task=make_task(agent_weights=(1.0, 1.0), max_grasp_force=0.97 * peak))
     with pytest.raises(SolverError, match="other constraint rows"):
-        ipopt.solve(solved.x, deadline=np.inf, problem=other)
+        ipopt.solve(solved.x, deadline=NEVER, problem=other)
 
 
 def test_nan_in_the_start_is_a_failure_and_no_exception(ipopt: Ipopt, starts: list[InitialGuess]) -> None:
     x = starts[0].x.copy()
     x[3] = np.nan
-    assert not ipopt.solve(x, deadline=np.inf).converged
+    assert not ipopt.solve(x, deadline=NEVER).converged
 
 
 def test_infeasible_task_does_not_converge(
@@ -147,5 +148,5 @@ def test_infeasible_task_does_not_converge(
 ) -> None:
     """A metre out of reach."""
     task = make_task(agent_weights=(1.0, 1.0), x=-1.5)
-    result = ipopt.solve(starts[0].x, deadline=np.inf, problem=replace(small_lift, task=task))
+    result = ipopt.solve(starts[0].x, deadline=NEVER, problem=replace(small_lift, task=task))
     assert not result.converged

@@ -14,9 +14,10 @@ from liftopt.collocation.codegen.simd_kernels import SimdKernel
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
-from liftopt.collocation.solvers.simd_nlp import wide_nlp
+from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import LiftTask
 from liftopt.search.initial_guess import InitialGuess
 
@@ -31,7 +32,7 @@ def kernels(small_lift: Problem) -> list[SimdKernel]:
 
 @pytest.fixture(scope="module")
 def simd(small_lift: Problem, kernels: list[SimdKernel]) -> Nlp:
-    return wide_nlp(small_lift, kernels)
+    return simd_nlp(small_lift, kernels)
 
 
 def everything(nlp: Nlp, x: np.ndarray, p: np.ndarray, sigma: float, lam: np.ndarray) -> list[ca.DM]:
@@ -74,7 +75,7 @@ def test_ipopt_on_wide_kernels_solves_the_same_lift(
     small_lift: Problem, kernels: list[SimdKernel], starts: list[InitialGuess], solved: SolverResult
 ) -> None:
     """IPOPT on one-knot kernels for the optimum, Pinocchio for the KKT error."""
-    found = Ipopt(small_lift, simd=kernels).solve(starts[0].x, deadline=np.inf)
+    found = Ipopt(small_lift, simd=kernels).solve(starts[0].x, deadline=NEVER)
     assert found.converged and kkt_error(small_lift, found.x, found.multipliers).error <= 1e-6
     np.testing.assert_allclose(found.objective, solved.objective, rtol=1e-6)
 
@@ -84,4 +85,4 @@ def test_nan_is_a_failure_and_no_exception(
 ) -> None:
     x = starts[0].x.copy()
     x[3] = np.nan
-    assert not Ipopt(small_lift, simd=kernels).solve(x, deadline=np.inf).converged
+    assert not Ipopt(small_lift, simd=kernels).solve(x, deadline=NEVER).converged

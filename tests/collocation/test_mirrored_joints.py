@@ -1,4 +1,4 @@
-"""Mirrors: Pinocchio tells whether what a mirrored arm carries is held as before."""
+"""Mirrored joints: Pinocchio tells whether what a mirrored arm carries is held as before."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 from liftopt.collocation.problem import Problem
 from liftopt.search.initial_guess import naive_guess
-from liftopt.search.mirrored_joints import in_line, mirrored
+from liftopt.search.mirrored_joints import in_line, mirrored_joints
 
 
 def test_mirrored_arm_holds_its_last_link_as_before(small_lift: Problem) -> None:
@@ -20,7 +20,7 @@ def test_mirrored_arm_holds_its_last_link_as_before(small_lift: Problem) -> None
     x, columns = naive_guess(small_lift).x, layout.control[:, layout.columns(1)]
     q = np.array([0.3, -0.8, 0.4, 1.0, -0.5, 0.9, 0.2])
     x[columns] = q
-    found = [start for start in mirrored(small_lift, x) if start.name.startswith("robot")]
+    found = [start for start in mirrored_joints(small_lift, x) if start.name.startswith("robot")]
     assert len(found) >= 3
     model = robot.reduced()
     data = model.createData()
@@ -49,4 +49,4 @@ def test_only_joints_between_axes_that_can_be_parallel_are_mirrored(small_lift: 
     np.testing.assert_allclose(in_line(arm), [np.nan, 0.0, np.nan, np.nan], atol=1e-12)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("liftopt.search.mirrored_joints.in_line", lambda agent: np.full(len(agent.posture), np.nan))
-        assert list(mirrored(small_lift, naive_guess(small_lift).x)) == []
+        assert list(mirrored_joints(small_lift, naive_guess(small_lift).x)) == []

@@ -1,8 +1,6 @@
-"""Other ways and detours: Pinocchio tells whether the grasps hold, and that only what should has changed."""
+"""Alternative paths and via postures: Pinocchio tells whether grasps hold, and that only what should has changed."""
 
 from __future__ import annotations
-
-import time
 
 import numpy as np
 import pinocchio as pin
@@ -11,14 +9,12 @@ import pytest
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
-from liftopt.search.alternative_paths import GAP, MOST, SAME, other_ways
+from liftopt.collocation.solvers.deadline import NEVER, Deadline
+from liftopt.search.alternative_paths import GAP, MOST, SAME_PATH, alternative_paths
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.moves import apart
 from liftopt.search.postures import PostureSolver
-from liftopt.search.via_postures import SAME as SAME_POSTURE
-from liftopt.search.via_postures import TOO_HIGH, detours, rests
-
-FOREVER = 1e12
+from liftopt.search.via_postures import APART, TOO_HIGH, low_cost_postures, via_postures
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +46,7 @@ def test_another_way_changes_one_agent_whose_hand_stays_with_the_object(
 ) -> None:
     """Knot by knot the spline is a fit: what Pinocchio finds may be a little more than the gap allowed on the way."""
     x, layout = starts[0].x, small_lift.layout
-    found = other_ways(small_lift, solver.kinematics, x, np.random.default_rng(1), FOREVER)
+    found = alternative_paths(small_lift, solver.kinematics, x, np.random.default_rng(1), NEVER)
     assert len(found) >= 2
     lower, upper = small_lift.bounds()
     for i, agent in enumerate(small_lift.team.agents):
@@ -64,7 +60,7 @@ def test_another_way_changes_one_agent_whose_hand_stays_with_the_object(
         ways = np.array([small_lift.mesh.basis[0] @ y[own] for y in (x, *(start.x for start in mine))])
         middle = ways.shape[1] // 2
         between = np.max([apart(agent, ways[:, k]) for k in (0, middle, -1)], axis=0)
-        assert (between[~np.eye(len(ways), dtype=bool)] > SAME / 2).all()
+        assert (between[~np.eye(len(ways), dtype=bool)] > SAME_PATH / 2).all()
         gaps = np.array([_gaps(small_lift, start.x)[:, i] for start in mine])
         assert np.median(gaps) < GAP
 
@@ -73,18 +69,18 @@ def test_equal_random_numbers_give_equal_ways_and_no_time_gives_none(
     small_lift: Problem, solver: PostureSolver, starts: list[InitialGuess]
 ) -> None:
     x = starts[0].x
-    one, two = (other_ways(small_lift, solver.kinematics, x, np.random.default_rng(1), FOREVER) for _ in range(2))
+    one, two = (alternative_paths(small_lift, solver.kinematics, x, np.random.default_rng(1), NEVER) for _ in range(2))
     for mine, other in zip(one, two, strict=True):
         np.testing.assert_array_equal(mine.x, other.x)
-    assert other_ways(small_lift, solver.kinematics, x, np.random.default_rng(1), time.monotonic() - 1.0) == []
+    assert alternative_paths(small_lift, solver.kinematics, x, np.random.default_rng(1), Deadline.after(-1.0)) == []
 
 
-def test_rests_hold_the_object_anywhere_and_the_cheapest_comes_first(
+def test_low_cost_postures_hold_the_object_anywhere_and_the_cheapest_comes_first(
     small_lift: Problem, solver: PostureSolver
 ) -> None:
     """Nothing at either end costs less than the best of all places, and no two postures are the same."""
-    rng, until = np.random.default_rng(0), np.inf
-    by = rests(small_lift, solver, rng, until)
+    rng, until = np.random.default_rng(0), NEVER
+    by = low_cost_postures(small_lift, solver, rng, until)
     costs = [posture.cost for posture in by]
     assert len(by) >= 2 and costs == sorted(costs)
     for pose in (small_lift.task.start, small_lift.task.end):
@@ -93,16 +89,16 @@ def test_rests_hold_the_object_anywhere_and_the_cheapest_comes_first(
     q = np.array([posture.coordinates for posture in by])
     columns = [small_lift.layout.columns(i) for i in range(len(small_lift.team.agents))]
     between = np.max([apart(a, q[:, c]) for a, c in zip(small_lift.team.agents, columns, strict=True)], axis=0)
-    assert (between[~np.eye(len(by), dtype=bool)] > SAME_POSTURE).all()
-    assert rests(small_lift, solver, rng, time.monotonic() - 1.0) == []
+    assert (between[~np.eye(len(by), dtype=bool)] > APART).all()
+    assert low_cost_postures(small_lift, solver, rng, Deadline.after(-1.0)) == []
 
 
-def test_a_detour_passes_the_posture_of_its_leader_and_ends_as_before(
+def test_a_path_via_a_posture_passes_the_posture_of_its_leader_and_ends_as_before(
     small_lift: Problem, solver: PostureSolver, starts: list[InitialGuess]
 ) -> None:
     x, layout = starts[0].x, small_lift.layout
-    by = rests(small_lift, solver, np.random.default_rng(0), np.inf)
-    found = detours(small_lift, solver.kinematics, x, by, FOREVER)
+    by = low_cost_postures(small_lift, solver, np.random.default_rng(0), NEVER)
+    found = via_postures(small_lift, solver.kinematics, x, by, NEVER)
     assert found
     before, after, middle = x[layout.control], Batch(small_lift), len(layout.mesh.phase) // 2
     limit = TOO_HIGH * after.objective(x[None])[0]
@@ -117,4 +113,4 @@ def test_a_detour_passes_the_posture_of_its_leader_and_ends_as_before(
             np.testing.assert_allclose(coordinates[middle, columns], by[int(n) - 1].coordinates[columns], atol=0.1)
         np.testing.assert_array_equal(start.x[layout.force], x[layout.force])
         assert after.objective(start.x[None])[0] < limit
-    assert detours(small_lift, solver.kinematics, x, [], FOREVER) == []
+    assert via_postures(small_lift, solver.kinematics, x, [], NEVER) == []

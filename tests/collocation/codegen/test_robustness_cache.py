@@ -13,10 +13,10 @@ from typing import Any
 
 import pytest
 
-from liftopt.collocation.codegen import kernel_cache as libraries
+from liftopt.collocation.codegen import kernel_cache
 from liftopt.collocation.codegen.kernel_cache import cache_folder, find_library, keep
 from liftopt.commands.cli import main
-from liftopt.files.checksum import DIGEST_BYTES, is_sealed, sealed
+from liftopt.files.checksum import DIGEST_BYTES, has_checksum, with_checksum
 from liftopt.files.interrupt import interrupts
 
 KEY = "0123456789abcdef" * 2
@@ -45,7 +45,7 @@ for i in range(12):
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return the user's cache folder with one library, and a package without any."""
-    monkeypatch.setattr(libraries, "PACKAGE", tmp_path / "package")
+    monkeypatch.setattr(kernel_cache, "PACKAGE", tmp_path / "package")
     monkeypatch.setenv("LIFTOPT_CACHE", str(tmp_path / "open" / "cache"))
     folder = cache_folder()
     assert folder is not None
@@ -54,15 +54,15 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def put(folder: Path, text: str) -> Path:
-    """Put a sealed file into a folder."""
+    """Put a file with its checksum into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{KEY}.so"
-    path.write_bytes(sealed(text.encode()))
+    path.write_bytes(with_checksum(text.encode()))
     return path
 
 
 def content(path: Path) -> str:
-    """Open a library: what it holds but for its seal."""
+    """Open a library: what it holds but for its checksum."""
     return path.read_bytes()[:-DIGEST_BYTES].decode()
 
 
@@ -70,7 +70,7 @@ def test_a_folder_put_in_the_place_of_the_cache_is_not_looked_into(
     cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where the way to the cache leads through somebody else's folder, that one can rename it at any moment."""
-    usual = libraries._is_sealed
+    usual = kernel_cache._has_checksum
 
     def rename_after_the_look(path: Path) -> bool:
         whole = usual(path)
@@ -79,7 +79,7 @@ def test_a_folder_put_in_the_place_of_the_cache_is_not_looked_into(
         return whole
 
     assert find_library(KEY, content) == "ours"
-    monkeypatch.setattr(libraries, "_is_sealed", rename_after_the_look)
+    monkeypatch.setattr(kernel_cache, "_has_checksum", rename_after_the_look)
     assert find_library(KEY, content) == "ours"
     assert content(cache / f"{KEY}.so") == "not ours"
 
@@ -105,12 +105,12 @@ def test_what_is_no_whole_file_in_the_cache_is_passed_over(kind: str, cache: Pat
     assert find_library(KEY, content) is None
 
 
-def test_an_empty_file_is_not_sealed() -> None:
-    assert not is_sealed(b"")
-    assert is_sealed(sealed(b""))
+def test_an_empty_file_has_no_checksum() -> None:
+    assert not has_checksum(b"")
+    assert has_checksum(with_checksum(b""))
 
 
-def test_a_shared_library_is_loaded_with_its_seal_and_outlives_its_file(cache: Path, tmp_path: Path) -> None:
+def test_a_shared_library_is_loaded_with_its_checksum_and_outlives_its_file(cache: Path, tmp_path: Path) -> None:
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         pytest.skip("there is no C compiler")
@@ -161,18 +161,18 @@ def test_a_swallowed_ctrl_c_ends_the_solve_at_its_next_step(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """CasADi's bindings drop an exception while they try conversions, or make another one of it."""
-    from liftopt.search import solve as lift
+    from liftopt.search.session import Session
 
-    class Swallowing(lift.Search):
-        def _on(self, *arguments: Any) -> None:
+    class Swallowing(Session):
+        def solvers(self, problem: Any) -> Any:
             try:
                 signal.raise_signal(signal.SIGINT)
             except KeyboardInterrupt:
                 if comes_out_as is not None:
                     raise comes_out_as("failed to evaluate") from None
-            super()._on(*arguments)
+            return super().solvers(problem)
 
-    monkeypatch.setattr(lift, "Search", Swallowing)
+    monkeypatch.setattr("liftopt.search.solve.Session", Swallowing)
     assert main(["solve", "--out", str(tmp_path / "out"), "--set", "solver.starts=1"]) == 130
     assert capsys.readouterr().err == "liftopt: error: interrupted\n"
     assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,121 @@
+"""What may be changed in a scenario to make its lift possible, and how large a change its obstacles seem to ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from liftopt.errors import InputError
+from liftopt.scenario.model import Scenario
+from liftopt.solution.infeasibility_report import InfeasibilityReason
+
+LEAST_MOVE = 0.05  # [m], tried first where nothing says how far to move
+
+
+@dataclass(frozen=True)
+class Adjustable:
+    """Values of a scenario that may be changed together.
+
+    Attributes:
+        keys: dotted keys; all move by the same amount.
+        step: resolution of the change.
+        usual: a change as large as this ranks as 1; of the value itself if ``relative``.
+        less, more: what a change is called; may hold {change} and {value}, and {was}.
+        against: constraints it may help with.
+        most: largest change tried, in steps.
+        relative: ``usual`` is a share of the value.
+    """
+
+    keys: tuple[str, ...]
+    step: float
+    usual: float
+    less: str
+    more: str
+    against: frozenset[str]
+    most: int = 64
+    relative: bool = False
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """Which ways it may change: -1, 1 or both."""
+        return tuple(sign for sign, words in ((-1, self.less), (1, self.more)) if words)
+
+    def values(self, scenario: Scenario) -> tuple[float, ...]:
+        """Return its values in a scenario, in the order of ``keys``."""
+        return tuple(scenario.value(key) for key in self.keys)
+
+    def changed(self, scenario: Scenario, steps: int) -> Scenario | None:
+        """Return the scenario with its values so many steps on, on the grid of steps; None if it would be none."""
+        grid = {key: round(round(scenario.value(key) / self.step + steps) * self.step, 6) for key in self.keys}
+        try:
+            return scenario.replace(grid)
+        except InputError:
+            return None
+
+    def hint(self, scenario: Scenario, reasons: Sequence[InfeasibilityReason]) -> int:
+        """Return how many steps the reasons seem to ask for; 0 if it cannot help against them."""
+        most, (was, *_) = 0.0, self.values(scenario)
+        for reason in reasons:
+            if reason.constraint not in self.against:
+                continue
+            if reason.static and reason.time is not None and self._elsewhere(reason.time):
+                return 0
+            if reason.static and self.keys == ("duration",):
+                continue
+            if not self.relative:
+                change = reason.amount if reason.unit == "m" else 0.0
+            elif self.keys == ("object.mass",):
+                change = was * reason.share / (1.0 + reason.share)
+            else:
+                change = was * reason.share
+            most = max(most, change, self.step if self.relative else LEAST_MOVE)
+        return int(np.ceil(most / self.step - 1e-9))
+
+    def _elsewhere(self, when: float) -> bool:
+        """Whether it moves only the other end of the lift than the one at a time."""
+        return all(key.startswith("task.end." if when == 0.0 else "task.start.") for key in self.keys)
+
+
+_REACH, _MOTION = frozenset({"closure", "workspace"}), frozenset({"closure", "workspace", "torque", "velocity"})
+_STRENGTH = frozenset({"torque", "grasp_force"})
+_POSTURE = _REACH | {"torque"}
+
+
+def adjustables(scenario: Scenario) -> list[Adjustable]:
+    """Return what may be changed in a scenario, the simplest first."""
+    found = [
+        Adjustable(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
+                   frozenset({"velocity", "torque", "grasp_force", "closure"}), 600, relative=True),
+        Adjustable(("object.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
+        Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
+                   frozenset({"grasp_force"}), 512, relative=True),
+        Adjustable(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
+                   "robot base {change:.2f} m farther away", _MOTION, 256),
+    ]  # fmt: skip
+    for keys, where in _ends(scenario, "height"):
+        lower, higher = where + " at most {value:.2f} m", where + " at least {value:.2f} m"
+        found.append(Adjustable(keys, 0.01, 0.1, lower, higher, _MOTION))
+    for keys, where in _ends(scenario, "human_distance"):
+        nearer, farther = (
+            where + " {change:.2f} m nearer to the person",
+            where + " {change:.2f} m farther from the person",
+        )
+        found.append(Adjustable(keys, 0.01, 0.1, nearer, farther, _POSTURE))
+    for name, agent in scenario.agents.items():
+        if agent.kind == "robot":
+            lower, higher = f"{name} base {{change:.2f}} m lower", f"{name} base {{change:.2f}} m higher"
+            height = f"{name}.base_height" if agent.base.z is None else f"{name}.base.z"
+            found.append(Adjustable((height,), 0.01, 0.1, lower, higher, _POSTURE))
+    shallower, deeper = "object at most {value:.2f} m deep", "object at least {value:.2f} m deep"
+    return [*found, Adjustable(("object.depth",), 0.01, 0.1, shallower, deeper, _POSTURE)]
+
+
+def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]]:
+    given = [end for end in ("start", "end") if getattr(getattr(scenario.task, end), name) is not None]
+    what = "height" if name == "height" else "object"
+    for end in given:
+        yield (f"task.{end}.{name}",), f"{end} height" if name == "height" else f"object at the {end}"
+    if len(given) == 2 and name != "height":
+        yield tuple(f"task.{end}.{name}" for end in given), f"{what} at both ends"

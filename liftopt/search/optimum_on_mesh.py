@@ -1,0 +1,67 @@
+"""One optimum continued on another mesh: the solver starts from the same motion and its multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.collocation.solvers.result import PRUNED, STOPPED, SolverResult
+from liftopt.collocation.transfer import transfer, transfer_multipliers
+from liftopt.errors import SolverError
+from liftopt.search.cache import BANDED, IPOPT, SolverCache
+from liftopt.search.candidate import Candidate
+
+Progress = Callable[[str], None]
+FASTEST_FIRST = (BANDED, IPOPT)
+IPOPT_ITERATIONS = 200  # from each start, where it takes over from another solver
+MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
+AFRESH = ", afresh on "  # before the mesh to which the motion of a start was taken without its multipliers
+
+
+def optimum_on_mesh(
+    cache: SolverCache,
+    candidate: Candidate,
+    intervals: int,
+    solvers: Sequence[str],
+    deadline: Deadline,
+    progress: Progress,
+    incumbent: SolverResult | None = None,
+    on_solve: Callable[[str, SolverResult], None] | None = None,
+    without_multipliers: bool = False,
+) -> Candidate | None:
+    """Return the optimum on another mesh that a candidate leads to; None if no solver converges in time.
+
+    Args:
+        cache: where solvers come from.
+        candidate: a converged one.
+        intervals: of the other mesh.
+        solvers: names, the first to be tried first.
+        deadline: past which solvers stop.
+        progress: hears of kernels that are compiled.
+        incumbent: an optimum on the other mesh; where nothing lower is in sight, or the solver fails, none is left.
+        on_solve: hears the name of the start and its result, be it an optimum or given up for the incumbent.
+        without_multipliers: start from the motion alone.
+    """
+    spline, scenario = candidate.spline.on(intervals), candidate.scenario
+    problem = cache.problem(scenario, spline, progress)
+    start = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, spline)
+    warm = None
+    if not without_multipliers:
+        warm = transfer_multipliers(candidate.problem, candidate.result.multipliers, problem)
+    origin, asked = candidate.start.partition(MESH)[0], scenario.solver.intervals
+    origin += f"{AFRESH}{intervals}" if without_multipliers else ""
+    start_name = origin if intervals == asked else f"{origin}{MESH}{intervals}"
+    for name in solvers:
+        try:
+            solver = cache.solver(problem, scenario, name, progress)
+        except SolverError:  # an extension that is missing: the next one does
+            continue
+        most = None if name == solvers[0] else IPOPT_ITERATIONS
+        result = solver.solve(start, deadline=deadline, warm=warm, problem=problem, incumbent=incumbent, most=most)
+        if on_solve and (result.converged or result.status == PRUNED):
+            on_solve(start_name, result)
+        if result.converged:
+            return Candidate(scenario, problem, spline, start_name, result, origin=candidate)
+        if incumbent is not None or result.status in (STOPPED, PRUNED):
+            break
+    return None

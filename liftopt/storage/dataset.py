@@ -1,0 +1,190 @@
+"""A solution as named arrays with labels and units: what solution.nc holds, and what xarray shows of it.
+
+It is described once. The writer stores it as it is, and xarray, whose import takes as long as a solve, comes in
+only where somebody asks for it.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.solution.solution import Solution
+from liftopt.storage.record import record
+from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = npt.NDArray[np.float64]
+LIBRARIES = ("casadi", "pin", "numpy", "scipy", "h5netcdf")
+
+
+class Variable(NamedTuple):
+    """Numbers along named dimensions."""
+
+    dimensions: tuple[str, ...]
+    values: Array
+    units: str
+    long_name: str
+
+
+@dataclass(frozen=True)
+class NamedArrays:
+    """What solution.nc holds.
+
+    Attributes:
+        labels: dimension -> names along it; ``time`` has numbers instead, the variable of that name.
+        variables: by name.
+        attributes: numbers and text by name.
+    """
+
+    labels: dict[str, tuple[str, ...]]
+    variables: dict[str, Variable]
+    attributes: dict[str, Any]
+
+
+def named_arrays(solution: Solution) -> NamedArrays:
+    """Return all there is to keep of a solution: reading it gives an equal one."""
+    return NamedArrays(_labels(solution), _variables(solution), _attributes(solution))
+
+
+def to_xarray(solution: Solution) -> xr.Dataset:
+    """Return a solution as the dataset that solution.nc holds: SI units, ``units`` and ``long_name`` on each variable.
+
+    Dimensions: ``time``, ``<agent>_joint``, ``xyz``, ``quat`` (x y z w), ``twist`` (linear then angular), ``grasp``,
+    ``pose``.
+    """
+    import xarray as xr
+
+    arrays = named_arrays(solution)
+    names = {
+        name: ((name,), np.array(labels, dtype=object), label_attributes(name))
+        for name, labels in arrays.labels.items()
+    }
+    numbers = {
+        name: (each.dimensions, each.values, {"units": each.units, "long_name": each.long_name})
+        for name, each in arrays.variables.items()
+    }
+    return xr.Dataset(numbers, coords=names, attrs=arrays.attributes)
+
+
+def label_attributes(dimension: str) -> dict[str, str]:
+    """Return the attributes of the names along a dimension."""
+    return {"units": "1", "long_name": f"names along {dimension}"}
+
+
+def _labels(solution: Solution) -> dict[str, tuple[str, ...]]:
+    labels = {f"{agent.name}_joint": agent.joint_names for agent in solution.agents}
+    return labels | {
+        "xyz": ("x", "y", "z"),
+        "quat": ("x", "y", "z", "w"),
+        "twist": ("vx", "vy", "vz", "wx", "wy", "wz"),
+        "grasp": tuple(agent.name for agent in solution.agents),
+        "pose": OBJECT_COORDINATES,
+    }
+
+
+def _variables(solution: Solution) -> dict[str, Variable]:
+    variables = {"time": Variable(("time",), solution.time, "s", "time of the knots")}
+    for agent in solution.agents:
+        dimensions = ("time", f"{agent.name}_joint")
+        for kind, values, unit, meaning in (
+            ("q", agent.q, "rad", "joint position (metres for the prismatic GT joints)"),
+            ("v", agent.v, "rad/s", "joint velocity (m/s for the prismatic GT joints)"),
+            ("a", agent.a, "rad/s^2", "joint acceleration (m/s^2 for the prismatic GT joints)"),
+            ("tau", agent.tau, "N m", "joint torque (force in N for the prismatic GT joints)"),
+        ):
+            variables[f"{agent.name}_{kind}"] = Variable(dimensions, values, unit, f"{agent.name} {meaning}")
+    return variables | _of_object(solution) | _of_grasps(solution) | _of_ground(solution)
+
+
+def _of_object(solution: Solution) -> dict[str, Variable]:
+    held, name = solution.object, solution.object.name
+    twist, pose = ("time", "twist"), ("time", "pose")
+    body = f"of the {name}, world axes, at its centre of mass: linear then angular"
+    second = "m/s^2, rad/s^2"
+    return {
+        f"{name}_position": Variable(
+            ("time", "xyz"), held.pose[:, :3], "m", f"centre of mass of the {name} in the world"
+        ),
+        f"{name}_quaternion": Variable(
+            ("time", "quat"), held.quaternion, "1", f"orientation of the {name} in the world"
+        ),
+        f"{name}_velocity": Variable(twist, held.velocity, "m/s, rad/s", f"velocity {body}"),
+        f"{name}_acceleration": Variable(twist, held.acceleration, second, f"acceleration {body}"),
+        f"{name}_pose": Variable(pose, held.pose, "m, rad", f"six coordinates of the {name}, R = Rx Ry Rz"),
+        f"{name}_pose_velocity": Variable(pose, held.pose_velocity, "m/s, rad/s", "their first derivatives"),
+        f"{name}_pose_acceleration": Variable(pose, held.pose_acceleration, second, "their second derivatives"),
+    }
+
+
+def _of_grasps(solution: Solution) -> dict[str, Variable]:
+    held, dimensions = solution.object, ("time", "grasp", "xyz")
+    force, moment = (
+        np.stack([getattr(agent, name) for agent in solution.agents], axis=1)
+        for name in ("grasp_force", "grasp_moment")
+    )
+    about = f"moment of each agent on the {held.name} about its grasp point, world axes; 0 for a point grasp"
+    return {
+        "grasp_force": Variable(dimensions, force, "N", f"force of each agent on the {held.name}, world axes"),
+        "grasp_moment": Variable(dimensions, moment, "N m", about),
+        "grasp_position": Variable(dimensions, held.grasp_position, "m", f"grasp points on the {held.name}, world"),
+    }
+
+
+def _of_ground(solution: Solution) -> dict[str, Variable]:
+    """Return the ground's reaction on every person, the first one's without a name in front."""
+    variables, dimensions = {}, ("time", "xyz")
+    for k, person in enumerate(solution.persons):
+        prefix = f"{person.name}_" if k else ""
+        force = f"force of the ground on the {person.name}, world axes"
+        moment = f"moment of the ground on the {person.name} at the foot origin, world axes"
+        variables[f"{prefix}ground_reaction_force"] = Variable(dimensions, person.ground_force, "N", force)
+        variables[f"{prefix}ground_reaction_moment"] = Variable(dimensions, person.ground_moment, "N m", moment)
+    return variables
+
+
+def _attributes(solution: Solution) -> dict[str, Any]:
+    versions = {"liftopt": _version("liftopt"), "python": platform.python_version()}
+    versions |= {library: _version(library) for library in LIBRARIES}
+    attributes: dict[str, Any] = {
+        "title": f"liftopt: {solution.scenario.name}",
+        "status": solution.status,
+        "verified": int(solution.solved),
+        "objective": solution.objective,
+        "iterations": solution.iterations,
+        "intervals": solution.intervals,
+        "max_violation": solution.verification.max_violation,
+        "kkt_error": solution.verification.kkt_error,
+        "versions": json.dumps(versions),
+        "assessment": json.dumps(solution.assessment.plain(), allow_nan=False),
+        "record": json.dumps(record(solution), allow_nan=False),
+        SCENARIO_TEXT: solution.scenario.to_toml(),
+    }
+    attributes |= {f"{URDF_TEXT}{name}": text for name, text in solution.urdfs.items()}
+    attributes |= {f"objective_{name}": value for name, value in solution.objective_terms.items()}
+    if (accuracy := solution.accuracy) is not None:
+        attributes |= {
+            "closure_between_knots": accuracy.closure,
+            "balance_between_knots": accuracy.balance,
+            "torque_excess_between_knots": accuracy.torque_excess,
+            "objective_limit": accuracy.objective_limit,
+            "objective_error": accuracy.objective_error,
+            "objective_bar": accuracy.objective_bar,
+        }
+    return attributes | {f"{name}_seconds": value for name, value in solution.seconds.items()}
+
+
+def _version(library: str) -> str:
+    try:
+        return version(library)
+    except PackageNotFoundError:  # a source tree that was never installed
+        return "0+unknown"
