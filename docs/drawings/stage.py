@@ -17,7 +17,7 @@ from matplotlib.patches import FancyArrowPatch, Polygon
 
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
-from liftopt.search.solve import lift
+from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
 from liftopt.storage.writer import save
 from liftopt.viz.outlines import outlines
@@ -39,7 +39,7 @@ class Body(NamedTuple):
 @cache
 def default_lift() -> Solution:
     """Return the default lift, solved once for all drawings."""
-    return lift(load_scenario("table5"))
+    return solve(load_scenario("table5"))
 
 
 @cache
