@@ -1,12 +1,14 @@
 """Write models/: the URDFs of the default subject, of Sawyer and of the table, and the subject's numbers.
 
-With ``--check`` nothing is written: the exit status is 1 if a file differs from what would be.
+Every URDF is read and checked by yourdfpy first, which the extra ``test`` has. With ``--check`` nothing is written: the
+exit status is 1 if a file differs from what would be.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from io import BytesIO
 from pathlib import Path
 
 from liftopt.multibody.person.human import Subject, human_agent
@@ -51,6 +53,14 @@ def numbers_page(subject: Subject) -> str:
     return "\n".join(lines) + "\n"
 
 
+def fault(urdf: str) -> str | None:
+    """Return what yourdfpy, which had no part in writing it, finds wrong with a URDF."""
+    import yourdfpy
+
+    read = yourdfpy.URDF.load(BytesIO(urdf.encode("ascii")), load_meshes=False, build_scene_graph=False)
+    return None if read.validate() else str(read.errors)
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Export the models, or report which files differ from what would be written; return the exit status."""
     parser = argparse.ArgumentParser(description="Write the generated files of models/.")
@@ -60,6 +70,8 @@ def main(arguments: list[str] | None = None) -> int:
     stale = []
     for name, text in default_files().items():
         path = options.out / name
+        if path.suffix == ".urdf" and (found := fault(text)) is not None:
+            raise SystemExit(f"{name} is no valid URDF: {found}")
         if options.check:
             if not path.is_file() or path.read_bytes() != text.encode("ascii"):
                 stale.append(str(path))

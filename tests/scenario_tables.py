@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from liftopt.files.entries import choices_of, extra_of, kinds_of, range_of
-from liftopt.files.section import section_of
+from liftopt.files.section import sections_in
 from liftopt.scenario.agents import KINDS
 from liftopt.scenario.model import Scenario
 
@@ -36,8 +36,8 @@ def _may_be_left_out(field: FieldInfo) -> bool:
 
 
 def _entry(name: str, field: FieldInfo) -> st.SearchStrategy[Any]:
-    if (inside := section_of(field)) is not None:
-        return section(inside)
+    if sections := sections_in(field):
+        return st.one_of([section(inside) for inside in sections])
     if choices := choices_of(field):
         return st.sampled_from(choices)
     kinds, (low, high, is_open) = kinds_of(field), range_of(field)

@@ -9,6 +9,7 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import edge_heights
 from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -62,10 +63,11 @@ def _headline(assessment: Assessment) -> str:
 
 
 def _scenario(scenario: Scenario) -> list[str]:
+    start, end = edge_heights(scenario)
     human, robot, table, task = scenario.first("person"), scenario.first("robot"), scenario.object, scenario.task
     return _wrapped(
         f"{human.sex} {human.stature:g} m, {human.mass:g} kg and {robot.model} lift {table.mass:g} kg ({table.depth:g} "
-        f"x {table.width:g} x {table.height:g} m) from {task.start.height:g} to {task.end.height:g} m (height of the "
+        f"x {table.width:g} x {table.height:g} m) from {start:g} to {end:g} m (height of the "
         f"edges they hold) in {scenario.duration:g} s, standing {task.standing_distance:g} m apart"
     )
 

@@ -33,6 +33,7 @@ def scenario_text(args: argparse.Namespace) -> str:
     from liftopt.files.new_file import write_new
     from liftopt.lab.mocap.recorded_file import load_recorded
     from liftopt.lab.mocap.recorded_scenario import recorded_scenario
+    from liftopt.scenario.placement import edge_heights
 
     lift = load_recorded(args.recorded)
     if args.lift is not None:
@@ -40,8 +41,9 @@ def scenario_text(args: argparse.Namespace) -> str:
     scenario = recorded_scenario(lift, args.object_mass)
     head = f"# Made from {' '.join(lift.source.split())}; what stands for what: liftopt/lab/recorded_scenario.py.\n"
     write_new("--out", Path(args.out), head + scenario.to_toml())
-    start, end = scenario.task.start, scenario.task.end
+    (low, high), ends = edge_heights(scenario), ("start", "end")
+    near, far = (scenario.value(f"task.{end}.human_distance") for end in ends)
     return (
-        f"{scenario.object.mass:g} kg from {start.height:g} to {end.height:g} m in {scenario.duration:g} s, "
-        f"the hand {start.human_distance:g} to {end.human_distance:g} m ahead of the feet\nWritten to {args.out}\n"
+        f"{scenario.object.mass:g} kg from {low:g} to {high:g} m in {scenario.duration:g} s, "
+        f"the hand {near:g} to {far:g} m ahead of the feet\nWritten to {args.out}\n"
     )

@@ -108,9 +108,14 @@ def refusal_at(of: type[BaseModel], place: Place, kind: str, value: object, pref
     return InputError(key, value, f"must be {allowed(field)} ({about(field)}){meant_by(field, value)}")
 
 
+def sections_in(field: FieldInfo) -> tuple[type[BaseModel], ...]:
+    """Return the sections of which a field holds one; none if it holds a value."""
+    return tuple(kind for kind in kinds_of(field) if isinstance(kind, type) and issubclass(kind, BaseModel))
+
+
 def section_of(field: FieldInfo) -> type[BaseModel] | None:
     """Return the section that a field holds, None if it holds a value or one of several sections."""
-    kinds = [kind for kind in kinds_of(field) if isinstance(kind, type) and issubclass(kind, BaseModel)]
+    kinds = sections_in(field)
     return kinds[0] if len(kinds) == 1 else None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, pi, radians, sin
+from math import pi, radians
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Placement:
     @property
     def ahead(self) -> Array:
         """(3,) unit vector of the direction, world axes."""
-        return np.array([1.0, 0.0, 0.0]) if self.yaw == 0.0 else np.array([cos(self.yaw), sin(self.yaw), 0.0])
+        return np.asarray(rotation_z(self.yaw)[:3, 0], dtype=np.float64)
 
 
 def facing(distance: float) -> Placement:

@@ -12,26 +12,7 @@ runs on either::
 An upstream ``pinocchio.casadi`` is used when it imports; otherwise the extension built from the wheels' own headers
 when liftopt was installed. All names of the one in use are attributes of this module.
 
-Exposed by the extension: ``Model``, ``Data``, ``Frame``, ``SE3``, ``Motion``, ``Force``, ``Inertia``,
-``StdVec_Force``, the enumerations of ``pinocchio`` and their values; ``rnea`` and ``computeRNEADerivatives`` with and
-without external forces, ``crba``; ``forwardKinematics``,
-``getVelocity``, ``getAcceleration``; ``updateFramePlacement``, ``updateFramePlacements``,
-``framesForwardKinematics``, ``getFrameVelocity``, ``getFrameAcceleration``, ``getFrameClassicalAcceleration``;
-``computeJointJacobians``, ``getJointJacobian``, ``getFrameJacobian``, ``computeFrameJacobian``. Joints: revolute and
-prismatic about any axis, spherical, free-flyer; fixed joints vanish in Pinocchio.
-
-Where the extension differs from upstream:
-
-- Joints and frames cannot be added to a symbolic model: build the ``pinocchio.Model`` first. Inertias, placements,
-  armature and gravity can be assigned. Limits, friction and other data that no algorithm here reads are not copied.
-- Arguments may be anything that ``casadi.SX`` takes (numbers, NumPy arrays), not only SX; attributes that upstream
-  lets one assign but that are results (``data.tau``) are read-only.
-- ``StdVec_Force`` is a Python list; a list of forces is taken for it. The sequences of a model and of a data have
-  fixed length and take integers, not slices. Of a frame, assign the placement, not the whole.
-- ``SE3()``, ``Motion()``, ``Force()`` and ``Inertia()`` are the identity or zero, not uninitialised.
-- Wrong sizes and a data of another model raise ValueError, indices out of range IndexError, where upstream may
-  read out of bounds.
-- The rotational inertia given to ``Inertia`` is taken as symmetric: its lower triangle is read.
+README.md in this folder says what the extension covers and where it differs from upstream.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The names of ``pinocchio.casadi`` from the extension that was built when liftopt was installed."""
+"""The names of ``pinocchio.casadi`` from the extension that was built when this package was installed.
+
+In the wheel of its own this file is ``pinocchio/casadi/__init__.py``.
+"""
 
 from __future__ import annotations
 
@@ -19,51 +22,42 @@ from pinocchio import (
 )
 from pinocchio.pinocchio_pywrap_default import __version__ as _pinocchio_version
 
-from liftopt.pinocchio_casadi.force_list import StdVec_Force
-from liftopt.pinocchio_casadi.versions import require_same_version
-
-try:
-    import _liftopt_pinocchio_casadi as _extension
-except ImportError as error:
-    raise ImportError(
-        "pinocchio.casadi is not installed, and liftopt's own extension for it cannot be loaded; reinstall liftopt "
-        f"with `pip install --force-reinstall --no-deps .`, which builds it ({error})"
-    ) from error
+from .extension import extension as _extension
+from .force_list import StdVec_Force
+from .versions import require_same_version
 
 require_same_version("casadi", casadi.CasadiMeta.version(), _extension.casadi_version)
 require_same_version("pin", _pinocchio_version, _extension.pinocchio_version)
 
-# Only now: these need the extension.
-from _liftopt_pinocchio_casadi import (  # noqa: E402
-    SE3,
-    Data,
-    Force,
-    Frame,
-    Inertia,
-    Motion,
-    StdVec_Frame,
-    StdVec_Inertia,
-    StdVec_Motion,
-    StdVec_SE3,
-    computeFrameJacobian,
-    computeJointJacobians,
-    computeRNEADerivatives,
-    crba,
-    forwardKinematics,
-    framesForwardKinematics,
-    getAcceleration,
-    getFrameAcceleration,
-    getFrameClassicalAcceleration,
-    getFrameJacobian,
-    getFrameVelocity,
-    getJointJacobian,
-    getVelocity,
-    rnea,
-    updateFramePlacement,
-    updateFramePlacements,
-)
+# Only now: this needs the extension.
+from .model import Model  # noqa: E402
 
-from liftopt.pinocchio_casadi.model import Model  # noqa: E402
+SE3 = _extension.SE3
+Data = _extension.Data
+Force = _extension.Force
+Frame = _extension.Frame
+Inertia = _extension.Inertia
+Motion = _extension.Motion
+StdVec_Frame = _extension.StdVec_Frame
+StdVec_Inertia = _extension.StdVec_Inertia
+StdVec_Motion = _extension.StdVec_Motion
+StdVec_SE3 = _extension.StdVec_SE3
+computeFrameJacobian = _extension.computeFrameJacobian
+computeJointJacobians = _extension.computeJointJacobians
+computeRNEADerivatives = _extension.computeRNEADerivatives
+crba = _extension.crba
+forwardKinematics = _extension.forwardKinematics
+framesForwardKinematics = _extension.framesForwardKinematics
+getAcceleration = _extension.getAcceleration
+getFrameAcceleration = _extension.getFrameAcceleration
+getFrameClassicalAcceleration = _extension.getFrameClassicalAcceleration
+getFrameJacobian = _extension.getFrameJacobian
+getFrameVelocity = _extension.getFrameVelocity
+getJointJacobian = _extension.getJointJacobian
+getVelocity = _extension.getVelocity
+rnea = _extension.rnea
+updateFramePlacement = _extension.updateFramePlacement
+updateFramePlacements = _extension.updateFramePlacements
 
 __all__ = [
     "BODY",

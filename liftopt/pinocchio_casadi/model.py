@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-import _liftopt_pinocchio_casadi as extension
 import numpy as np
 import pinocchio
 
-from liftopt.errors import ModelError
+from .extension import extension
+
+try:
+    from liftopt.errors import ModelError
+except ImportError:  # the wheel of its own stands without liftopt
+
+    class ModelError(ValueError):  # type: ignore[no-redef]
+        """A model cannot be used here."""
 
 
 class Model(extension.Model):  # type: ignore[misc]

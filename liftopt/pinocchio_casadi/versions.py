@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from .extension import REINSTALL
+
 
 def require_same_version(package: str, installed: str, built_against: str) -> None:
     """Raise ImportError, naming the fix, unless the installed version is the one that was built against."""
     if installed != built_against:
         raise ImportError(
-            f"liftopt's extension was built against {package} {built_against}, but {installed} is installed; "
-            f"run `pip install {package}=={built_against}` or reinstall liftopt with `pip install .`"
+            f"pinocchio.casadi was built against {package} {built_against}, but {installed} is installed; "
+            f"run `pip install {package}=={built_against}`, or {REINSTALL}"
         )

@@ -87,6 +87,11 @@ class Robot(Section):
     weight: Weight = 1.0
 
     @property
+    def height_key(self) -> str:
+        """Key within the robot of the height of its base."""
+        return "base_height" if self.base.z is None else "base.z"
+
+    @property
     def height(self) -> float:
         """Height of the base above the floor [m]."""
         return self.base_height if self.base.z is None else self.base.z

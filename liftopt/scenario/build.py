@@ -20,7 +20,7 @@ from liftopt.multibody.table import lifted_table
 from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import grasp_points, lead, stand_of
-from liftopt.scenario.task import GraspPlace
+from liftopt.scenario.task import GraspPlace, ObjectPlace
 
 Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
@@ -133,12 +133,15 @@ def _grasp(who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
     return Grasp(True, who.max_grasp_moment, math.radians(who.grasp_turn_deg), reference.T)
 
 
-def _pose(scenario: Scenario, place: GraspPlace) -> Array:
-    """Return the pose of the centre of mass from where the grasp points are.
+def _pose(scenario: Scenario, place: GraspPlace | ObjectPlace) -> Array:
+    """Return the pose of the centre of mass: the object's own, or from where the grasp points are.
 
     ``height`` is midway between them, ``human_distance`` the lead's. The centre of mass lies half the box's height off
     that middle, along the body's Z axis; half the depth along its X axis leads there from the lead's grasp point.
     """
+    if isinstance(place, ObjectPlace):
+        x, y = (np.nan if value is None else value for value in (place.x, place.y))
+        return np.array([x, y, place.z, 0.0, math.radians(place.pitch_deg), 0.0])
     box, pitch, feet = scenario.object, math.radians(place.pitch_deg), stand_of(scenario, lead(scenario))
     forward = (box.depth * math.cos(pitch) + box.height * math.sin(pitch)) / 2
     ahead = np.nan if place.human_distance is None else feet.x + (place.human_distance + forward)

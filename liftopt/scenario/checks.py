@@ -6,14 +6,18 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.files.entries import FREE
+from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.agents import NAME, NAMES
-from liftopt.scenario.placement import grasp_points, stand_of
+from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lead, stand_of
+from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.scenario.urdf_files import urdf_files
 
 if TYPE_CHECKING:
     from liftopt.scenario.model import Scenario
 
 # What results call otherwise: attributes objective_<agent>, and the sections beside the agents.
+OWN_PLACE = "give the object's own x, y and z"
 TAKEN = ("acceleration", "force", "limit", "error", "bar", "schema", "table")
 
 
@@ -25,7 +29,7 @@ def check(scenario: Scenario) -> None:
     _check_weights(scenario)
     for name in scenario.agents:
         stand_of(scenario, name)
-    grasp_points(scenario)
+    _check_grasps(scenario)
     for end in ("start", "end"):
         _check_place(scenario, end)
 
@@ -43,6 +47,14 @@ def _check_names(scenario: Scenario) -> None:
             raise InputError("agents", name, f"has the file {file}, as another agent; give it another name")
 
 
+def _check_grasps(scenario: Scenario) -> None:
+    for name in scenario.object.grasps:
+        if name not in scenario.agents:
+            offer = did_you_mean(nearest(name, scenario.agents)) or f"; there are {', '.join(scenario.agents)}"
+            raise InputError(f"object.grasps.{name}", NO_VALUE, f"is the grasp of nobody{offer}")
+    grasp_points(scenario)
+
+
 def _check_weights(scenario: Scenario) -> None:
     weights = {f"{name}.weight": agent.weight for name, agent in scenario.agents.items()}
     objective = scenario.objective
@@ -55,17 +67,24 @@ def _check_weights(scenario: Scenario) -> None:
 
 
 def _check_place(scenario: Scenario, end: str) -> None:
-    task, most = scenario.task, scenario.limits.table_pitch_deg
-    place = getattr(task, end)
+    place: GraspPlace | ObjectPlace = getattr(scenario.task, end)
+    most = scenario.limits.table_pitch_deg
     if abs(place.pitch_deg) > most:
         allowed = f"must be from {-most:g} to {most:g} deg, or raise limits.table_pitch_deg"
         raise InputError(f"task.{end}.pitch_deg", place.pitch_deg, allowed)
-    distance: float | None = place.human_distance
+    if isinstance(place, GraspPlace):
+        _check_distance(scenario, f"task.{end}.human_distance", place.human_distance)
+
+
+def _check_distance(scenario: Scenario, key: str, distance: float | None) -> None:
+    task, first = scenario.task, lead(scenario)
+    if distance is not None and (scenario.agents[first].kind != "person" or stand_of(scenario, first).yaw_deg % 360.0):
+        raise InputError(key, distance, f"counts from the feet of a person who faces along X, not {first}; {OWN_PLACE}")
     room = task.standing_distance - scenario.object.depth
-    if (distance or 0.0) >= room:
+    if distance_key(scenario) == DISTANCE and (distance or 0.0) >= room:
         where = f"standing_distance {task.standing_distance:g} m, object.depth {scenario.object.depth:g} m"
         raise InputError(
-            f"task.{end}.human_distance",
-            "free" if distance is None else distance,
+            key,
+            FREE if distance is None else distance,
             f"must be below {room:g} m, or the object reaches behind the robot's base ({where})",
         )

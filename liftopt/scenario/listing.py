@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from liftopt.files.section import about, allowed, section_of
+from liftopt.files.section import about, allowed, sections_in
 from liftopt.scenario.agents import KINDS
 from liftopt.scenario.keys import AGENTS
 
@@ -29,13 +29,15 @@ def fields_of(of: type[BaseModel], agents: Mapping[str, str], prefix: str = "") 
                 yield from fields_of(KINDS[kind], agents, f"{agent}.")
             continue
         yield key, field
-        if (inside := section_of(field)) is not None:
-            yield from fields_of(inside, agents, f"{key}.")
+        inner: dict[str, FieldInfo] = {}
+        for section in sections_in(field):
+            inner = dict(fields_of(section, agents, f"{key}.")) | inner
+        yield from inner.items()
 
 
 def describe(of: type[BaseModel], agents: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     """Yield the dotted key of every entry and what it holds: meaning, range and default; arguments as ``fields_of``."""
     for key, field in fields_of(of, agents):
-        if section_of(field) is None:
+        if not sections_in(field):
             has_default = not field.is_required() and field.default is not None
             yield key, f"{about(field)}: {allowed(field)}" + (f"; default {field.default}" if has_default else "")

@@ -16,15 +16,14 @@ from pydantic import AfterValidator, ValidationError, model_validator
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import entry, number
-from liftopt.files.section import Section, first_fault, refusal_at, shown_key
-from liftopt.files.suggestions import did_you_mean
-from liftopt.scenario.agents import KINDS, Agent, Agents, Kind, Person, Robot
+from liftopt.files.section import Section, first_fault, refusal_at
+from liftopt.scenario.agents import Agent, Agents, Kind, Person, Robot
 from liftopt.scenario.box import Box
 from liftopt.scenario.checks import check
 from liftopt.scenario.file import read_tables
 from liftopt.scenario.keys import AGENTS, Changes, changes_in, path_of, set_entry, value_at
-from liftopt.scenario.listing import DEFAULT_TEAM, describe, fields_of
-from liftopt.scenario.meant import nearest_keys
+from liftopt.scenario.listing import describe
+from liftopt.scenario.refusals import refusal
 from liftopt.scenario.schema1 import as_schema_2
 from liftopt.scenario.settings import Limits, Objective, Refine, Solver
 from liftopt.scenario.task import Lift
@@ -115,22 +114,7 @@ class Scenario(Section):
     @classmethod
     def refusal(cls, error: ValidationError, values: Any, prefix: str = "") -> InputError:
         """Return our error for pydantic's, with an agent's keys by its name."""
-        fault = first_fault(error)
-        place, kind, value = list(fault["loc"]), fault["type"], fault["input"]
-        team = _kinds_in(values.get(AGENTS))
-        if kind == "extra_forbidden":
-            return _unknown(cls, place, value, team)
-        if place[0] != AGENTS or len(place) == 1:
-            return refusal_at(cls, tuple(place), kind, value)
-        name, *inside = place[1:]
-        if inside:
-            return refusal_at(KINDS[str(inside[0])], tuple(inside[1:]), kind, value, f"{name}.")
-        allowed = " or ".join(f'"{kind}"' for kind in KINDS) + " (what the agent is)"
-        if not isinstance(value, Mapping):
-            return InputError(str(name), value, "must be a section of an agent, with its kind: " + allowed)
-        if "kind" not in value:
-            return InputError(f"{name}.kind", NO_VALUE, f"is missing; must be {allowed}")
-        return InputError(f"{name}.kind", value["kind"], f"must be {allowed}")
+        return refusal(cls, first_fault(error), values)
 
 
 def load_scenario(source: str | Path | None = None, changes: Changes = ()) -> Scenario:
@@ -183,33 +167,3 @@ def _scenario(tables: Mapping[str, Any]) -> Scenario:
 
 def _required(key: str) -> str:
     return str(refusal_at(Scenario, (key,), "missing", None)).partition("; ")[2]
-
-
-def _unknown(of: type[Scenario], place: list[Any], value: Any, team: Mapping[str, str]) -> InputError:
-    """Return the error for an unknown key, with those that may have been meant."""
-    known = [key for key, _ in fields_of(of, team)]
-    if place[0] == AGENTS:
-        place = [place[1], *place[3:]]  # without the kind
-        beside = [key.rpartition(".")[2] for key in known if key.rpartition(".")[0] == ".".join(map(str, place[:-1]))]
-    else:
-        outer = ".".join(map(str, place[:-1]))
-        beside = [key.rpartition(".")[2] for key in known if key.rpartition(".")[0] == outer]
-        if not outer:
-            beside = ["schema", *of.model_fields]
-    if isinstance(value, Mapping) and value:
-        # Of a section that is not known its first entry says more than all of it.
-        inner, value = next(iter(value.items()))
-        place = [*place, inner]
-    key = ".".join(shown_key(str(part)) for part in place)
-    meant = nearest_keys(".".join(map(str, place)), [*known, *team], team)
-    return InputError(key, value, "unknown key" + (did_you_mean(meant) or "; known here: " + ", ".join(beside)))
-
-
-def _kinds_in(agents: object) -> dict[str, str]:
-    """Return the kind of every agent by its name as far as they are right; the default team where there is none."""
-    found: dict[str, str] = {}
-    for name, agent in agents.items() if isinstance(agents, Mapping) else ():
-        kind = agent.get("kind") if isinstance(agent, Mapping) else getattr(agent, "kind", None)
-        if kind in KINDS:
-            found[str(name)] = str(kind)
-    return found or DEFAULT_TEAM

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.edges import Point, edge_grasps
 from liftopt.scenario.agents import Person
+from liftopt.scenario.task import GraspPlace, ObjectPlace
 
 if TYPE_CHECKING:
     from liftopt.scenario.model import Scenario
+
+DISTANCE = "task.standing_distance"
 
 
 class Stand(NamedTuple):
@@ -48,6 +52,29 @@ def stand_of(scenario: Scenario, name: str) -> Stand:
     base = agent.base
     x = base.x if base.x is not None else _default(scenario, name, {}, (ahead, 0.0), "base.x")[0]
     return Stand(x, base.y, base.yaw_deg)
+
+
+def distance_key(scenario: Scenario) -> str | None:
+    """Return the key that says how far off the partner stands; None where no one number does."""
+    name = partner(scenario)
+    if name is None:
+        return None
+    agent = scenario.agents[name]
+    if isinstance(agent, Person):
+        return DISTANCE if agent.position is None else None
+    return DISTANCE if agent.base.x is None else f"{name}.base.x"
+
+
+def edge_heights(scenario: Scenario) -> tuple[float, float]:
+    """Return how high the middle of the object's underside is at the start and at the end [m]."""
+    start, end = (_edge_height(scenario, place) for place in (scenario.task.start, scenario.task.end))
+    return start, end
+
+
+def _edge_height(scenario: Scenario, place: GraspPlace | ObjectPlace) -> float:
+    if isinstance(place, GraspPlace):
+        return place.height
+    return place.z - scenario.object.height / 2 * math.cos(math.radians(place.pitch_deg))
 
 
 def grasp_points(scenario: Scenario) -> dict[str, Point]:

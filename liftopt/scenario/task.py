@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
+
+from pydantic import Discriminator, Tag
 
 from liftopt.files.entries import OrFree, entry, free_number, number
 from liftopt.files.section import Section
 
+PLACED = "a section with the keys height and human_distance, or x, y and z"
 RESTS = Literal["velocity", "acceleration"]
 
 
@@ -24,6 +28,26 @@ class GraspPlace(Section):
     ] = 0.0
 
 
+class ObjectPlace(Section):
+    """Where the object is at one end of the motion, by its centre; None is "free" in a file."""
+
+    x: Annotated[float | None, free_number("centre of the object along X", "m", -5.0, 5.0), OrFree]
+    y: Annotated[float | None, free_number("centre of the object along Y", "m", -5.0, 5.0), OrFree] = None
+    z: Annotated[float, number("height of the object's centre", "m", 0.0, 3.0)]
+    pitch_deg: Annotated[float, number("tilt of the object about Y", "deg", -60.0, 60.0)] = 0.0
+
+
+def _tag(place: object) -> str:
+    """Return which kind of place is meant: one that names x, y or z is the object's own."""
+    keys = place if isinstance(place, Mapping) else getattr(type(place), "model_fields", {})
+    return OWN if any(key in keys for key in ("x", "y", "z")) else BY_GRASP
+
+
+OWN, BY_GRASP = "own", "grasp"
+PLACES: dict[str, type[GraspPlace] | type[ObjectPlace]] = {BY_GRASP: GraspPlace, OWN: ObjectPlace}
+Place = Annotated[Annotated[GraspPlace, Tag(BY_GRASP)] | Annotated[ObjectPlace, Tag(OWN)], Discriminator(_tag)]
+
+
 class Lift(Section):
     """From where to where, how far apart the two stand, and what is zero at both ends."""
 
@@ -31,5 +55,5 @@ class Lift(Section):
     rest: Annotated[RESTS, entry("zero at both ends: velocity, or acceleration too as in files without it")] = (
         "velocity"
     )
-    start: GraspPlace
-    end: GraspPlace
+    start: Annotated[Place, entry("where the object is at first", PLACED)]
+    end: Annotated[Place, entry("where the object is at last", PLACED)]

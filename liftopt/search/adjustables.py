@@ -9,6 +9,7 @@ import numpy as np
 
 from liftopt.errors import InputError
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import distance_key, partner
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 
 LEAST_MOVE = 0.05  # [m], tried first where nothing says how far to move
@@ -91,13 +92,15 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
         Adjustable(("object.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
         Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
                    frozenset({"grasp_force"}), 512, relative=True),
-        Adjustable(("task.standing_distance",), 0.01, 0.1, "robot base {change:.2f} m nearer",
-                   "robot base {change:.2f} m farther away", _MOTION, 256),
     ]  # fmt: skip
-    for keys, where in _ends(scenario, "height"):
+    if (away := distance_key(scenario)) is not None:
+        who = _base(scenario, partner(scenario) or "")
+        nearer, farther = f"{who} {{change:.2f}} m nearer", f"{who} {{change:.2f}} m farther away"
+        found.append(Adjustable((away,), 0.01, 0.1, nearer, farther, _MOTION, 256))
+    for keys, where in (*_ends(scenario, "height"), *_ends(scenario, "z")):
         lower, higher = where + " at most {value:.2f} m", where + " at least {value:.2f} m"
         found.append(Adjustable(keys, 0.01, 0.1, lower, higher, _MOTION))
-    for keys, where in _ends(scenario, "human_distance"):
+    for keys, where in (*_ends(scenario, "human_distance"), *_ends(scenario, "x")):
         nearer, farther = (
             where + " {change:.2f} m nearer to the person",
             where + " {change:.2f} m farther from the person",
@@ -106,16 +109,20 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
     for name, agent in scenario.agents.items():
         if agent.kind == "robot":
             lower, higher = f"{name} base {{change:.2f}} m lower", f"{name} base {{change:.2f}} m higher"
-            height = f"{name}.base_height" if agent.base.z is None else f"{name}.base.z"
-            found.append(Adjustable((height,), 0.01, 0.1, lower, higher, _POSTURE))
+            found.append(Adjustable((f"{name}.{agent.height_key}",), 0.01, 0.1, lower, higher, _POSTURE))
     shallower, deeper = "object at most {value:.2f} m deep", "object at least {value:.2f} m deep"
     return [*found, Adjustable(("object.depth",), 0.01, 0.1, shallower, deeper, _POSTURE)]
 
 
 def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]]:
-    given = [end for end in ("start", "end") if getattr(getattr(scenario.task, end), name) is not None]
-    what = "height" if name == "height" else "object"
+    given = [end for end in ("start", "end") if getattr(getattr(scenario.task, end), name, None) is not None]
+    upright = name in ("height", "z")
     for end in given:
-        yield (f"task.{end}.{name}",), f"{end} height" if name == "height" else f"object at the {end}"
-    if len(given) == 2 and name != "height":
-        yield tuple(f"task.{end}.{name}" for end in given), f"{what} at both ends"
+        yield (f"task.{end}.{name}",), f"{end} height" if upright else f"object at the {end}"
+    if len(given) == 2 and not upright:
+        yield tuple(f"task.{end}.{name}" for end in given), "object at both ends"
+
+
+def _base(scenario: Scenario, name: str) -> str:
+    """Return what of an agent is moved to move it, in words."""
+    return f"{name} base" if scenario.agents[name].kind == "robot" else name

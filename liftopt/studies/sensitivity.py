@@ -22,11 +22,11 @@ from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
 from liftopt.files.entries import FREE
-from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
 from liftopt.solution.summary import limit_share, shares
+from liftopt.studies.parameters import Parameter, changed, parameters_of
 
 Array = npt.NDArray[np.float64]
 # Of central differences of the problem itself, times the value: their error is its square.
@@ -38,51 +38,6 @@ HALVINGS = 4  # of the change that a reader thinks in
 SAME, SYMMETRIC, NOTHING = 0.10, 0.25, 0.002
 # Another motion: further from the optimum by this [rad, m] than so many times what the tangent says.
 ELSEWHERE, FURTHER = 0.1, 3.0
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """Something that a lift depends on.
-
-    Attributes:
-        name: in words.
-        keys: of the scenario; several move together.
-        change: that a reader thinks in, in ``unit``.
-        unit: SI unit of both.
-    """
-
-    name: str
-    keys: tuple[str, ...]
-    change: float
-    unit: str
-
-
-def parameters_of(scenario: Scenario) -> tuple[Parameter, ...]:
-    """Return what a scenario's lift depends on: everybody's measures, the object, and the task."""
-    found: list[Parameter] = []
-    for name, agent in scenario.agents.items():
-        if agent.kind == "person":
-            found.append(Parameter(_of(scenario, name, "stature"), (f"{name}.stature",), 0.01, "m"))
-            found.append(Parameter(_of(scenario, name, "body mass"), (f"{name}.mass",), 1.0, "kg"))
-    found += [
-        Parameter("object mass", ("object.mass",), 0.1, "kg"),
-        Parameter("object depth", ("object.depth",), 0.01, "m"),
-        Parameter("start height", ("task.start.height",), 0.01, "m"),
-        Parameter("end height", ("task.end.height",), 0.01, "m"),
-        Parameter("grasp from feet", ("task.start.human_distance", "task.end.human_distance"), 0.01, "m"),
-        Parameter("feet to robot", ("task.standing_distance",), 0.01, "m"),
-    ]
-    for name, agent in scenario.agents.items():
-        if agent.kind == "robot":
-            found.append(Parameter(_of(scenario, name, "robot base height"), (f"{name}.base_height",), 0.01, "m"))
-    return (*found, Parameter("duration", ("duration",), 0.1, "s"))
-
-
-def _of(scenario: Scenario, name: str, what: str) -> str:
-    """Return what of an agent is meant; with others of its kind by its name."""
-    kind = scenario.agents[name].kind
-    alone = sum(agent.kind == kind for agent in scenario.agents.values()) == 1
-    return what if alone else f"{what} of {name}"
 
 
 @dataclass(frozen=True)
@@ -153,19 +108,6 @@ def study(
     """
     chosen = parameters_of(candidate.scenario) if parameters is None else parameters
     return _Differences(candidate, cache).study(chosen, progress or (lambda line: None))
-
-
-def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario:
-    """Return the scenario with all keys of a parameter changed by as much.
-
-    Raises:
-        InputError: the change leads out of what a scenario may say.
-    """
-    values = {key: scenario.value(key) for key in parameter.keys}
-    free = [key for key, value in values.items() if not isinstance(value, float)]
-    if free:
-        raise InputError(free[0], FREE, "is no number that could change")
-    return scenario.replace({key: float(value + change) for key, value in values.items()})
 
 
 def figures(candidate: Candidate) -> dict[str, float]:

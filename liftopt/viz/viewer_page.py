@@ -1,7 +1,7 @@
 """The page that plays one lift, or two: one self-contained file with the meshcat viewer, the scene and the controls.
 
-The page that ``liftopt view`` serves and the file that ``--html`` writes are the same bytes. The meshcat package
-lends its bundle of the viewer and three.js; its server and its Python classes are not needed, and not imported.
+The page that ``liftopt view`` serves and the file that ``--html`` writes are the same bytes. The viewer, with three.js
+in it, is meshcat's own file (``assets/meshcat``); nothing else of meshcat is needed.
 """
 
 from __future__ import annotations
@@ -10,14 +10,12 @@ import json
 import re
 from collections.abc import Sequence
 from importlib.resources import files
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.errors import InputError
 from liftopt.solution.solution import Solution
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
@@ -47,7 +45,7 @@ def playback_page(
         sawyer: the manufacturer's ``sawyer_description`` folder, for its meshes in place of our own primitives.
 
     Raises:
-        InputError: there is no such folder, or meshcat's viewer is not installed.
+        InputError: there is no such folder.
     """
     casts = _casts(solution, other, ghost, None if sawyer is None else Path(sawyer))
     scale = _metres_per_newton(casts)
@@ -138,9 +136,10 @@ def _title(solution: Solution, other: Solution | None) -> str:
 
 
 def _fill(data: dict[str, Any], title: str) -> str:
-    assets, viewer = files("liftopt.viz") / "assets", meshcat_viewer()
+    assets = files("liftopt.viz") / "assets"
+    viewer = assets / "meshcat"
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    licences = [(viewer / name).read_text(encoding="utf-8") for name in ("../LICENSE", "main.min.js.LICENSE.txt")]
+    licences = [(viewer / name).read_text(encoding="utf-8") for name in ("LICENSE", "main.min.js.LICENSE.txt")]
     pieces = {
         "@TITLE@": title.replace("&", "&amp;").replace("<", "&lt;"),
         "@STYLE@": (assets / "playback.css").read_text(encoding="utf-8"),
@@ -153,17 +152,3 @@ def _fill(data: dict[str, Any], title: str) -> str:
     page = (assets / "playback.html").read_text(encoding="utf-8")
     # In one pass: a piece may hold what looks like a mark.
     return re.sub("|".join(pieces), lambda mark: pieces[mark.group()], page)
-
-
-def meshcat_viewer() -> Path:
-    """Return the folder with the meshcat package's bundled viewer.
-
-    Raises:
-        InputError: meshcat is not installed, or has no viewer.
-    """
-    spec = find_spec("meshcat")
-    for place in (spec.submodule_search_locations or []) if spec else []:
-        folder = Path(place) / "viewer" / "dist"
-        if (folder / "main.min.js").is_file():
-            return folder
-    raise InputError("meshcat", "viewer/dist/main.min.js", "is missing; install the Python package meshcat again")

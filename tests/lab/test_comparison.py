@@ -154,8 +154,8 @@ def test_what_cannot_be_compared(as_recorded: Made, solution: Solution) -> None:
 def test_the_scenario_of_a_recorded_prediction_is_its_own(as_recorded: Made, solution: Solution) -> None:
     """The person's and the robot's grasp are mirror images in a table: its depth is what lies between the carriers."""
     made, given = recorded_scenario(as_recorded(solution), 2.0), solution.scenario
-    assert (made.duration, made.human, made.table.mass) == (given.duration, given.human, 2.0)
-    assert made.table.depth == pytest.approx(given.table.depth, abs=2e-3)
+    assert (made.duration, made.first("person"), made.object.mass) == (given.duration, given.first("person"), 2.0)
+    assert made.object.depth == pytest.approx(given.object.depth, abs=2e-3)
     for end in ("start", "end"):
         ours, theirs = getattr(made.task, end), getattr(given.task, end)
         assert ours.height == pytest.approx(theirs.height, abs=1e-3)

@@ -56,7 +56,7 @@ def test_saving_it_again_makes_one_of_today(kept: Any, older: Path) -> None:
         ),
         (lambda folder: (folder / ".older-result").mkdir(), "the one before it is in "),
     ],
-    ids=str,
+    ids=lambda given: given if isinstance(given, str) else "",
 )
 def test_one_that_is_not_whole_is_one_clear_line(
     older: Path, spoil: Callable[[Path], object], told: str, capsys: pytest.CaptureFixture[str]

@@ -106,7 +106,7 @@ def test_command_writes_table_json_and_figures(
         rows = list(csv.DictReader(file))
     found = json.loads((tmp_path / "pareto.json").read_text(encoding="utf-8"))
     assert [float(row["human_effort_N2m2s"]) for row in rows] == [p["human_effort_N2m2s"] for p in found["points"]]
-    assert found["scenario"]["table"]["mass"] == 2.0
+    assert found["scenario"]["object"]["mass"] == 2.0
     starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
     for kind, first in starts.items():
         assert (tmp_path / f"pareto.{kind}").read_bytes().startswith(first)

@@ -22,7 +22,8 @@ from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.solve import solve
 from liftopt.solution.summary import limit_share
-from liftopt.studies.sensitivity import Parameter, Study, changed, figures, parameters_of, study
+from liftopt.studies.parameters import Parameter, changed, parameters_of
+from liftopt.studies.sensitivity import Study, figures, study
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
 PARAMETERS = parameters_of(load_scenario())

@@ -36,6 +36,8 @@ FLAGS = (
 )
 # Extensions of x86-64 that the code gains from, as both the kernel and the compiler call them.
 EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl")
+# The sets of them that change the vectors' width, the widest first: a processor runs the first that it has whole.
+PROCESSORS = (EXTENSIONS, EXTENSIONS[:3], ())
 # What generated code may call beside arithmetic; a function that is missing here would not compile. The conditions on
 # LANES are those that vectors.hpp tests at run time.
 PRELUDE = """\
@@ -99,7 +101,9 @@ class SimdKernel:
 
 
 def load_simd_kernels(
-    requests: Sequence[tuple[Builder, Topology]], progress: Progress | None = None
+    requests: Sequence[tuple[Builder, Topology]],
+    progress: Progress | None = None,
+    extensions: Sequence[str] | None = None,
 ) -> list[SimdKernel] | None:
     """Return a wide kernel for each (builder, topology), or None where one cannot be made.
 
@@ -108,38 +112,40 @@ def load_simd_kernels(
     Args:
         requests: what to load; equal topologies share one kernel.
         progress: called with a line of progress when there is something to wait for.
+        extensions: of the processor that is to run them, one of ``PROCESSORS``; None is this one.
     """
     progress = progress or (lambda line: None)
-    keys = [_key(builder, topology) for builder, topology in requests]
+    options = tuple(f"-m{name}" for name in (_extensions() if extensions is None else extensions))
+    keys = [_key(builder, topology, options) for builder, topology in requests]
     found: dict[str, SimdKernel] = {}
     for key in dict.fromkeys(keys):
         if (kernel := find_library(key, _load)) is not None:
             found[key] = kernel
     missing = {key: request for key, request in zip(keys, requests, strict=True) if key not in found}
     if missing:
-        found.update(_compile(missing, cache_folder(), progress))
+        found.update(_compile(missing, options, cache_folder(), progress))
     return [found[key] for key in keys] if all(key in found for key in keys) else None
 
 
-def _key(builder: Builder, topology: Topology) -> str:
+def _key(builder: Builder, topology: Topology, options: tuple[str, ...]) -> str:
     digest = hashlib.sha256(kernel_key(builder, topology).encode())
-    digest.update(repr((FLAGS, _extensions())).encode())
+    digest.update(repr((FLAGS, options)).encode())
     digest.update(Path(__file__).read_bytes())
     return digest.hexdigest()[:32]
 
 
 def _extensions() -> tuple[str, ...]:
-    """Return the compiler's options for those of ``EXTENSIONS`` that this processor and system have."""
+    """Return the first of ``PROCESSORS`` that this processor and system have whole, of ``EXTENSIONS`` at most."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
         return ()
-    has = next((line for line in lines if line.startswith("flags")), "").split()
-    return tuple(f"-m{name}" for name in EXTENSIONS if name in has)
+    has = {*next((line for line in lines if line.startswith("flags")), "").split()}.intersection(EXTENSIONS)
+    return next(extensions for extensions in PROCESSORS if has.issuperset(extensions))
 
 
 def _compile(
-    missing: Mapping[str, tuple[Builder, Topology]], folder: Path | None, progress: Progress
+    missing: Mapping[str, tuple[Builder, Topology]], options: Sequence[str], folder: Path | None, progress: Progress
 ) -> dict[str, SimdKernel]:
     compiler = find_compiler()
     if compiler is None:
@@ -151,7 +157,7 @@ def _compile(
         for key, (builder, topology) in missing.items():
             source, built = Path(work) / f"{key}.c", Path(work) / f"{key}.so"
             source.write_text(lanes_source(builder(topology)))
-            command = [*compiler, *FLAGS, *baseline_flags(), *_extensions(), str(source), "-o", str(built), "-lm"]
+            command = [*compiler, *FLAGS, *baseline_flags(), *options, str(source), "-o", str(built), "-lm"]
             silent = subprocess.DEVNULL
             jobs[key] = built, subprocess.Popen(command, stdout=silent, stderr=silent)
         for key, (built, process) in jobs.items():

@@ -5,7 +5,7 @@ PYBIND11_MODULE(_liftopt_pinocchio_casadi, module)
   // Brings libcasadi into the process and the type that symbolic arguments have.
   pybind11::module_::import("casadi");
 
-  module.doc() = "Pinocchio on casadi::SX; use it through liftopt.pinocchio_casadi.";
+  module.doc() = "Pinocchio on casadi::SX; use it through pinocchio.casadi or liftopt.pinocchio_casadi.";
   module.attr("casadi_version") = LIFTOPT_CASADI_VERSION;
   module.attr("pinocchio_version") = LIFTOPT_PINOCCHIO_VERSION;
 

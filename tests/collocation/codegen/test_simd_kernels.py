@@ -154,12 +154,13 @@ def test_another_processor_does_not_find_them(
 @pytest.mark.parametrize(
     ("line", "expected"),
     [
-        ("flags\t\t: fpu sse2 avx avx2 fma abm", ("-mavx", "-mavx2", "-mfma")),
+        ("flags\t\t: fpu sse2 avx avx2 fma abm", ("avx", "avx2", "fma")),
+        ("flags\t\t: fpu sse2 avx", ()),
         ("flags\t\t: fpu avx512fp16 avx512_bf16", ()),
         ("Features\t: fp asimd", ()),
     ],
 )
-def test_only_what_the_processor_has_is_asked_of_the_compiler(
+def test_a_processor_gets_the_widest_vectors_that_it_has_whole(
     line: str, expected: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Processors as Linux describes them, with extensions whose names begin like ours."""

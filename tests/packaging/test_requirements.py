@@ -1,0 +1,111 @@
+"""What pyproject.toml asks for. The oracle is what the code imports, and what the other lists say."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+OWN_WHEEL = tomllib.loads((ROOT / "liftopt/pinocchio_casadi/pyproject.toml").read_text(encoding="utf-8"))
+# Distributions whose module has another name; markupsafe is a part of jinja2 that has its own.
+DISTRIBUTIONS = {"pinocchio": "pin", "serial": "pyserial", "markupsafe": "jinja2"}
+# Compiled here, or a part of Python from 3.11 on.
+OURS = {"liftopt", "_liftopt_banded", "_liftopt_pinocchio_casadi"}
+# Run as the build runs it, but without a compiler: then it imports the same and compiles nothing.
+SHIP = """
+import json, sys
+from liftopt.search import ship_kernels
+ship_kernels.main([sys.argv[1]])
+files = {name: module.__file__ for name, module in sys.modules.items() if name.partition(".")[0] == "liftopt"}
+print(json.dumps({"files": [file for file in files.values() if file], "loaded": list(sys.modules)}))
+"""
+
+
+def listed(requirements: list[str]) -> dict[str, str]:
+    """Return version bounds by the name of the distribution."""
+    found = {}
+    for requirement in requirements:
+        match = re.fullmatch(r"([\w.-]+)\s*([^;]*?)\s*(;.*)?", requirement)
+        assert match is not None, requirement
+        found[match[1].lower().replace("_", "-")] = match[2]
+    return found
+
+
+BUILD = listed(PROJECT["build-system"]["requires"])
+PLAIN = listed(PROJECT["project"]["dependencies"])
+EXTRAS = {name: listed(entries) for name, entries in PROJECT["project"]["optional-dependencies"].items()}
+
+
+def imported(file: Path) -> set[str]:
+    """Return the distributions that a file's import statements name."""
+    modules: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            modules |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            modules.add(str(node.module).partition(".")[0])
+    return modules - OURS - sys.stdlib_module_names
+
+
+def distributions(modules: set[str]) -> set[str]:
+    return {DISTRIBUTIONS.get(name, name).lower().replace("_", "-") for name in modules}
+
+
+def test_the_build_has_all_that_compiling_the_kernels_imports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is missing there would leave the kernels out of the wheel, and say so in a line that nobody reads."""
+    monkeypatch.setenv("CC", "")
+    command = [sys.executable, "-c", SHIP, str(tmp_path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
+    told: dict[str, Any] = json.loads(run.stdout.splitlines()[-1])
+    loaded = {name.partition(".")[0] for name in told["loaded"]}
+    needed = set().union(*(imported(Path(file)) for file in told["files"])) & loaded
+    assert {"casadi", "numpy", "pinocchio"} <= needed
+    assert distributions(needed) - BUILD.keys() == set()
+
+
+def test_a_package_has_the_same_bounds_wherever_it_is_asked_for() -> None:
+    for name, entries in {"the build": BUILD, **EXTRAS}.items():
+        for package in entries.keys() & PLAIN.keys():
+            assert entries[package] == PLAIN[package], f"{package} in {name}"
+    for package in EXTRAS["test"].keys() & (EXTRAS["lab"] | EXTRAS["crosscheck"]).keys():
+        assert EXTRAS["test"][package] == (EXTRAS["lab"] | EXTRAS["crosscheck"])[package], package
+
+
+def test_the_wheel_of_pinocchio_casadi_is_built_from_the_same_versions() -> None:
+    build, plain = listed(OWN_WHEEL["build-system"]["requires"]), listed(OWN_WHEEL["project"]["dependencies"])
+    assert build.items() <= BUILD.items()
+    assert plain.items() <= PLAIN.items()
+    assert f"=={OWN_WHEEL['project']['version']}" == PLAIN["pin"]
+
+
+def test_everything_imported_is_asked_for_and_everything_asked_for_is_imported() -> None:
+    found = {file: distributions(imported(file)) for file in (ROOT / "liftopt").rglob("*.py")}
+    offered = PLAIN.keys() | EXTRAS["lab"].keys() | EXTRAS["crosscheck"].keys()
+    assert {str(file): names - offered for file, names in found.items() if names - offered} == {}
+    assert PLAIN.keys() - set().union(*found.values()) == set()
+
+
+def test_only_laboratory_and_crosscheck_import_what_a_plain_install_has_not() -> None:
+    for file in (ROOT / "liftopt").rglob("*.py"):
+        if file.relative_to(ROOT / "liftopt").parts[0] not in ("lab", "crosscheck"):
+            assert distributions(imported(file)) - PLAIN.keys() == set(), file
+
+
+def test_the_installation_page_tells_what_every_package_is_for() -> None:
+    page = (ROOT / "docs/installation.md").read_text(encoding="utf-8").replace("_", "-")
+    for names in (PLAIN, *EXTRAS.values()):
+        assert [name for name in names if f"`{name}`" not in page] == []
+    assert [extra for extra in EXTRAS if f"`{extra}`" not in page] == []
