@@ -31,6 +31,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
+autodoc_default_options = {"exclude-members": "model_config, refusal, __init__"}
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
 

@@ -20,7 +20,7 @@ for parameter in found["parameters"]:
     change = parameter["change"]  # the largest one within which what it does is in proportion
     names.append(f"{parameter['name']}\n+{change:.2g} {parameter['unit']}")
     shares.append(100 * parameter["slopes"]["effort human"] * change / effort)
-    print(f"{names[-1]!r:45} {shares[-1]:+.2f} % of the person's effort")
+    print(f"{parameter['name']:20} {shares[-1]:+.2f} % of the person's effort")
 
 figure, axes = plt.subplots(figsize=(7, 0.5 * len(names) + 1), layout="constrained")
 axes.barh(names, shares)
