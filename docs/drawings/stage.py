@@ -15,11 +15,8 @@ import pinocchio as pin
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon
 
+import liftopt as lo
 from liftopt.scenario.build import agents_of, object_of
-from liftopt.scenario.model import load_scenario
-from liftopt.search.solve import solve
-from liftopt.solution.solution import Solution
-from liftopt.storage.writer import save
 from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_style import INK, Array
 
@@ -37,9 +34,9 @@ class Body(NamedTuple):
 
 
 @cache
-def default_lift() -> Solution:
+def default_lift() -> lo.Solution:
     """Return the default lift, solved once for all drawings."""
-    return solve(load_scenario("table5"))
+    return lo.solve(lo.load_scenario("table5"))
 
 
 @cache
@@ -47,7 +44,7 @@ def default_result() -> Path:
     """Return the folder that the default lift is saved in, for as long as the build takes."""
     folder = Path(tempfile.mkdtemp(prefix="liftopt-docs-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return save(default_lift(), folder)
+    return default_lift().save(folder)
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from liftopt.scenario.model import load_scenario
+import liftopt as lo
 from tables import table
 
 HEAD = ("key", "meaning", "allowed", "default")
@@ -10,7 +10,7 @@ HEAD = ("key", "meaning", "allowed", "default")
 
 def scenario_keys() -> str:
     """Return one table a section: key, meaning, what is allowed, default. Agents stand under their names."""
-    scenario = load_scenario()
+    scenario = lo.load_scenario()
     sections: dict[str, list[tuple[str, ...]]] = {}
     for key, what in scenario.describe():
         about, _, allowed = what.partition(": ")

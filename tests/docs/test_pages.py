@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import xarray as xr
 
+import liftopt
 from liftopt.commands.cli import main
 
 ROOT = Path(__file__).parents[2]
@@ -143,3 +144,9 @@ def test_every_example_has_a_place_in_the_gallery() -> None:
     finally:
         sys.path.remove(str(DOCS))
     assert sorted(GALLERY) == sorted(path.stem for path in (ROOT / "scripts" / "examples").glob("*.py"))
+
+
+def test_every_public_name_is_on_the_api_page() -> None:
+    page = (DOCS / "api.md").read_text(encoding="utf-8")
+    documented = set(re.findall(r"^\.\. auto(?:class|function|exception):: (\w+)$", page, flags=re.MULTILINE))
+    assert documented == set(liftopt.__all__)
