@@ -42,7 +42,7 @@ def write_tables(folder: Path) -> None:
     from tables.terminal import terminal
 
     folder.mkdir(parents=True, exist_ok=True)
-    for make in (
+    tables = (
         scenario_keys,
         variables,
         attributes,
@@ -52,5 +52,6 @@ def write_tables(folder: Path) -> None:
         rooms,
         commands,
         terminal,
-    ):
+    )
+    for make in tables:
         (folder / f"{make.__name__}.md").write_text(make(), encoding="utf-8")
