@@ -42,16 +42,6 @@ def write_tables(folder: Path) -> None:
     from tables.terminal import terminal
 
     folder.mkdir(parents=True, exist_ok=True)
-    tables = (
-        scenario_keys,
-        variables,
-        attributes,
-        solution_attributes,
-        json_keys,
-        urdf_names,
-        rooms,
-        commands,
-        terminal,
-    )
-    for make in tables:
+    told = (scenario_keys, variables, attributes, solution_attributes, json_keys, urdf_names, rooms, commands, terminal)
+    for make in told:
         (folder / f"{make.__name__}.md").write_text(make(), encoding="utf-8")
