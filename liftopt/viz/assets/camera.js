@@ -93,8 +93,8 @@ function make_camera(viewer, data, element) {
   // Names stand above the heads; where two would cover each other, the later one goes higher, and none lies half under
   // a panel.
   function place_names() {
-    if (!data.labels.length) return;
     camera.updateMatrixWorld();
+    if (!data.labels.length) return;
     const placed = [];
     const panels = ["facts", "views", "bar"].map((id) => element(id).getBoundingClientRect());
     [...element("names").children].forEach((name, i) => {
