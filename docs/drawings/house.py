@@ -29,9 +29,11 @@ ROOMS: dict[str, tuple[float, float, str]] = {
     "studies": (2.1, 1.9, "many lifts"),
     "control": (4.2, 1.9, "lift after lift"),
     "crosscheck": (2.1, 0.8, "independent checks"),
+    "face": (0.0, 4.1, "import liftopt"),
     "commands": (0.0, 1.9, "the command line"),
     "files": (0.0, 0.8, "whole files, safely"),
 }
+AROUND = ("face", "commands", "files")
 MAIN = ("scenario", "multibody", "collocation", "search", "solution")
 FLOWS = (
     *pairwise(MAIN),
@@ -49,7 +51,7 @@ def house() -> Figure:
     axes = figure.subplots()
     figure.subplots_adjust(left=0.005, right=0.995, top=0.995, bottom=0.005)
     for name, (x, y, what) in ROOMS.items():
-        color = BLUE if name in MAIN else GREEN if y > 3 else ORANGE if y < 3 and x > 0 else LIMIT
+        color = BLUE if name in MAIN else LIMIT if name in AROUND else GREEN if y > 3 else ORANGE
         _room(axes, name, what, x, y, color)
     for start, end in FLOWS:
         _flow(axes, ROOMS[start][:2], ROOMS[end][:2])
