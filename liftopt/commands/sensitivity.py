@@ -9,18 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from liftopt.commands.terminal import telling
-from liftopt.errors import InputError, LiftoptError
+from liftopt.errors import InputError
 from liftopt.files.atomic_file import write_whole
-from liftopt.scenario.model import Scenario
 from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
-    from liftopt.search.cache import SolverCache
-    from liftopt.search.candidate import Candidate
-    from liftopt.studies.sensitivity import Sensitivity, Study
-
-SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
+    from liftopt.studies.sensitivity import Sensitivity, SensitivityStudy
 
 
 def add_sensitivity_parser(commands: Any) -> None:
@@ -58,10 +53,9 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
     if plot is not None and plot.suffix[1:] not in FORMATS:
         raise InputError("--plot", args.plot, "must end in .svg, .png or .pdf")
     scenario = scenario_or_solved(args.scenario, args.overrides)
-    from liftopt.studies.sensitivity import study
+    from liftopt.studies import sensitivity as studies
 
-    candidate, cache = _polished(scenario, progress)
-    found = study(candidate, cache, progress=progress)
+    found = studies.sensitivity(scenario, progress)
     if plot is not None:
         _write_plot(found, plot)
     if args.json:
@@ -69,7 +63,7 @@ def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None
     return table(found) + ("" if plot is None else f"Written to {plot}\n")
 
 
-def study_dict(study: Study) -> dict[str, Any]:
+def study_dict(study: SensitivityStudy) -> dict[str, Any]:
     """Return a study ready for JSON: slopes in the figures' units over the parameter's."""
     return {
         "scenario": study.candidate.scenario.to_dict(),
@@ -94,23 +88,7 @@ def study_dict(study: Study) -> dict[str, Any]:
     }
 
 
-def _polished(scenario: Scenario, progress: Callable[[str], None] | None) -> tuple[Candidate, SolverCache]:
-    """Return the best candidate, polished as far as the solver goes, and the cache it comes from."""
-    from liftopt.control.replanning import Replanner
-    from liftopt.search.cache import SolverCache
-
-    cache = SolverCache()
-    replanner = Replanner(progress, cache)
-    solution = replanner.solve(scenario)
-    candidate = replanner.latest
-    if candidate is None:
-        raise LiftoptError(f"no verified solution to differentiate: {solution.status}")
-    sharp = min(SHARP, scenario.solver.tolerance)
-    polished = replanner.replan(scenario.replace({"solver.tolerance": sharp}))
-    return (candidate if polished is None or not polished.solved else polished), cache
-
-
-def _write_plot(study: Study, path: Path) -> None:
+def _write_plot(study: SensitivityStudy, path: Path) -> None:
     from matplotlib import rc_context
 
     from liftopt.studies.sensitivity_plot import sensitivity_figure
@@ -122,7 +100,7 @@ def _write_plot(study: Study, path: Path) -> None:
     write_whole("--plot", path, rendered(figure, path.suffix[1:]))
 
 
-def table(study: Study) -> str:
+def table(study: SensitivityStudy) -> str:
     """Return the table that the command prints."""
     from liftopt.assessment.who import who_is
     from liftopt.studies.sensitivity import bearers
@@ -131,18 +109,17 @@ def table(study: Study) -> str:
     told = {agent.name: who_is(agent, agents) for agent in agents}
     now, bearing = study.figures, bearers(study)
     efforts = ", ".join(f"of {who.called} {now[f'effort {name}']:.4g}" for name, who in told.items())
-    first, *others = (f"{told[name].called} {100 * now[f'share {name}']:.1f} %" for name in bearing)
+    borne = [f"{100 * now[f'share {name}']:.1f} %" for name in bearing]
+    others = [f"{told[name].called} {share}" for name, share in zip(bearing[1:], borne[1:], strict=True)]
+    limits = [f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest]
     lines = [
         f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} N2 m2 s; "
         f"{told[bearing[0]].called} bears",
-        ", ".join([first.removeprefix(f"{told[bearing[0]].called} "), *others])
-        + ". Nearest to their limits: "
-        + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest)
-        + ".",
+        f"{', '.join([borne[0], *others])}. Nearest to their limits: {' and '.join(limits)}.",
         "",
     ]
     columns = _columns(study)
-    name = max(17, *(len(s.parameter.name) for s in study.sensitivities), 0)
+    name = max([17, *(len(s.parameter.name) for s in study.sensitivities)])
     groups = {column.group: [one for one in columns if one.group == column.group] for column in columns}
     head = [f"{group:>{sum(one.width for one in some) + len(some) - 1}}" for group, some in groups.items()]
     lines += [
@@ -170,7 +147,7 @@ class _Column(NamedTuple):
     width: int
 
 
-def _columns(study: Study) -> list[_Column]:
+def _columns(study: SensitivityStudy) -> list[_Column]:
     """Return the columns of efforts, loads and torques: everybody's, by name where there are several of a kind."""
     from liftopt.assessment.who import who_is
     from liftopt.studies.sensitivity import bearers
@@ -191,7 +168,7 @@ def _columns(study: Study) -> list[_Column]:
     return columns
 
 
-def _remarks(study: Study) -> list[str]:
+def _remarks(study: SensitivityStudy) -> list[str]:
     """Return the lines below the table: what it says, and where it cannot be relied on."""
     lines = [
         "",

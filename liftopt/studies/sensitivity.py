@@ -20,9 +20,10 @@ import numpy.typing as npt
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.control.replanning import Replanner
-from liftopt.errors import InputError
+from liftopt.errors import InputError, LiftoptError
 from liftopt.files.entries import FREE
 from liftopt.multibody.trajectory import limit_share
+from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
@@ -37,6 +38,7 @@ HALVINGS = 4  # of the change that a reader thinks in
 # Slopes of a step and of half of it agree to this share, what up and down do to the other; what is less than NOTHING,
 # as a share of the figure now or of the whole, is none at all.
 SAME, SYMMETRIC, NOTHING = 0.10, 0.25, 0.002
+SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
 # Another motion: further from the optimum by this [rad, m] than so many times what the tangent says.
 ELSEWHERE, FURTHER = 0.1, 3.0
 
@@ -49,7 +51,7 @@ class Sensitivity:
         parameter: which.
         value: of the scenario, in its unit; the first where several keys move together.
         change: for which the slopes hold, up and down; at most the parameter's.
-        slopes: of each of ``Study.figures`` by the parameter, in the figure's unit over the parameter's.
+        slopes: of each of ``SensitivityStudy.figures`` by the parameter, in the figure's unit over the parameter's.
         envelope: derivative of the objective by the envelope theorem, found without solving again.
         doubt: why the slopes are not to be relied on even for ``change``, in words; empty if they are.
         beyond: why they do not hold for the parameter's whole change, in words; empty if they do.
@@ -70,7 +72,7 @@ class Sensitivity:
 
 
 @dataclass(frozen=True)
-class Study:
+class SensitivityStudy:
     """What a lift depends on.
 
     Attributes:
@@ -90,12 +92,34 @@ class Study:
     left_out: tuple[tuple[Parameter, str], ...]
 
 
+def sensitivity(scenario: Scenario, progress: Callable[[str], None] | None = None) -> SensitivityStudy:
+    """Return what a lift depends on: it is solved, and solved again with each parameter a little up and down.
+
+    Args:
+        scenario: what to lift.
+        progress: hears one line at a time.
+
+    Raises:
+        InputError: a value of the scenario cannot be used.
+        LiftoptError: the scenario has no verified solution, or kernels cannot be had.
+    """
+    cache = SolverCache()
+    replanner = Replanner(progress, cache)
+    solution = replanner.solve(scenario)
+    candidate = replanner.latest
+    if candidate is None:
+        raise LiftoptError(f"no verified solution to differentiate: {solution.status}")
+    sharp = min(SHARP, scenario.solver.tolerance)
+    polished = replanner.replan(scenario.replace({"solver.tolerance": sharp}))
+    return study(candidate if polished is None or not polished.solved else polished, cache, progress=progress)
+
+
 def study(
     candidate: Candidate,
     cache: SolverCache,
     parameters: Sequence[Parameter] | None = None,
     progress: Callable[[str], None] | None = None,
-) -> Study:
+) -> SensitivityStudy:
     """Return what a plan depends on.
 
     Args:
@@ -111,14 +135,14 @@ def study(
     return _Differences(candidate, cache).study(chosen, progress or (lambda line: None))
 
 
-def bearers(study: Study) -> tuple[str, ...]:
+def bearers(study: SensitivityStudy) -> tuple[str, ...]:
     """Return the names of those whose part of the load is told: of the people, or of everybody where there are none."""
     agents = study.candidate.problem.team.agents
     return tuple(agent.name for agent in agents if agent.kind == "person") or tuple(agent.name for agent in agents)
 
 
 def figures(candidate: Candidate) -> dict[str, float]:
-    """Return ``Study.figures`` of a plan."""
+    """Return ``SensitivityStudy.figures`` of a plan."""
     problem, spline, x = candidate.problem, candidate.spline, candidate.result.x
     motion = motion_at(problem, spline, x, spline.phase)
     terms, weights = objective_terms(motion), objective_weights(problem)
@@ -157,7 +181,7 @@ class _Differences:
         carried = [name for name in self.now if name.startswith("share")]
         self.told = [*self.relative, *carried, *(f"used {name}" for name in self.busiest)]
 
-    def study(self, parameters: Sequence[Parameter], progress: Callable[[str], None]) -> Study:
+    def study(self, parameters: Sequence[Parameter], progress: Callable[[str], None]) -> SensitivityStudy:
         """Return what the plan depends on."""
         found, left_out = [], []
         for parameter in parameters:
@@ -170,7 +194,7 @@ class _Differences:
                 found.append(self._sensitivity(parameter, value))
             except InputError as error:
                 left_out.append((parameter, str(error)))
-        return Study(self.candidate, self.now, self.busiest, tuple(found), tuple(left_out))
+        return SensitivityStudy(self.candidate, self.now, self.busiest, tuple(found), tuple(left_out))
 
     def _sensitivity(self, parameter: Parameter, value: float) -> Sensitivity:
         tangent = self._tangent(parameter, value)

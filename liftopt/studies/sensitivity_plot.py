@@ -7,14 +7,14 @@ from itertools import cycle
 from matplotlib.figure import Figure
 
 from liftopt.assessment.who import who_is
-from liftopt.studies.sensitivity import Study, bearers
+from liftopt.studies.sensitivity import SensitivityStudy, bearers
 from liftopt.viz.plots_style import INK, LINES, WIDTH
 
 ROW, MARGINS = 0.34, 0.9  # height of a parameter and of what is around all of them [in]
 THICK = 0.36  # of a bar, at most, as a share of its row
 
 
-def sensitivity_figure(study: Study) -> Figure:
+def sensitivity_figure(study: SensitivityStudy) -> Figure:
     """Return bars for the efforts and for the load share, greatest first; call it in ``rc_context(STYLE)``.
 
     Hatched bars are of parameters whose slopes are not to be relied on.

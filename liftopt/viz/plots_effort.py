@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.multibody.joint_curves import ANATOMY
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.viz.anatomy import ANATOMY
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
 

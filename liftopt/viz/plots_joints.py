@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from liftopt.multibody.joint_curves import JointCurve, human_curves, robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Array, Line, draw, panels, percent, time_axes
 from liftopt.viz.who import robot_of

@@ -11,11 +11,11 @@ import numpy as np
 from liftopt.assessment.who import listed, who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
+from liftopt.multibody.joint_curves import human_curves, robot_curves
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.scenario.build import agents_of
 from liftopt.solution.finding import MATHEMATICS, Finding
 from liftopt.solution.solution import Solution
-from liftopt.viz.anatomy import human_curves, robot_curves
 from liftopt.viz.base import base_of
 from liftopt.viz.plots import figure_names
 from liftopt.viz.plots_data import Lift

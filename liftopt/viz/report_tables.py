@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from liftopt.ergonomics.lift import subject_in
+from liftopt.multibody.joint_curves import JointCurve
 from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
-from liftopt.viz.anatomy import JointCurve
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,10 @@ else:
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 OWN_WHEEL = tomllib.loads((ROOT / "liftopt/pinocchio_casadi/pyproject.toml").read_text(encoding="utf-8"))
-# Distributions whose module has another name; markupsafe is a part of jinja2 that has its own.
-DISTRIBUTIONS = {"pinocchio": "pin", "serial": "pyserial", "markupsafe": "jinja2"}
+# Distributions whose module has another name, and modules that are parts of another distribution.
+DISTRIBUTIONS = {"pinocchio": "pin", "serial": "pyserial", "markupsafe": "jinja2"} | dict.fromkeys(
+    ("annotated_types", "pydantic_core", "typing_extensions"), "pydantic"
+)
 # Compiled here, or a part of Python from 3.11 on.
 OURS = {"liftopt", "_liftopt_banded", "_liftopt_pinocchio_casadi"}
 # Run as the build runs it, but without a compiler: then it imports the same and compiles nothing.

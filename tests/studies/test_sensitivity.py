@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.solve import solve
 from liftopt.studies.parameters import Parameter, changed, parameters_of
-from liftopt.studies.sensitivity import Study, figures, study
+from liftopt.studies.sensitivity import SensitivityStudy, figures, study
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
 PARAMETERS = parameters_of(load_scenario())
@@ -48,7 +49,7 @@ def candidate(replanner: Replanner) -> Candidate:
 
 
 @pytest.fixture(scope="module")
-def near(candidate: Candidate, cache: SolverCache) -> Study:
+def near(candidate: Candidate, cache: SolverCache) -> SensitivityStudy:
     return study(candidate, cache)
 
 
@@ -94,7 +95,9 @@ def test_slopes_of_small_changes_are_those_of_the_optimality_conditions(
                 assert s.slopes[name] == pytest.approx(expected[name], abs=5e-3 * largest), (s.parameter.name, name)
 
 
-def test_slopes_are_those_of_the_lift_solved_again(near: Study, candidate: Candidate, replanner: Replanner) -> None:
+def test_slopes_are_those_of_the_lift_solved_again(
+    near: SensitivityStudy, candidate: Candidate, replanner: Replanner
+) -> None:
     """At half the change, where the promise is at most a tenth off, or next to nothing."""
     assert [s.parameter for s in near.sensitivities] == list(PARAMETERS)
     assert sum(s.is_reliable for s in near.sensitivities) >= 8
@@ -111,13 +114,13 @@ def test_slopes_are_those_of_the_lift_solved_again(near: Study, candidate: Candi
             assert s.slopes[name] * s.change == pytest.approx(half, rel=0.12, abs=0.0025 * whole), (s.parameter, name)
 
 
-def test_objective_slopes_by_solving_again_and_by_envelope_agree(near: Study) -> None:
+def test_objective_slopes_by_solving_again_and_by_envelope_agree(near: SensitivityStudy) -> None:
     """The envelope theorem gives the slope at the optimum, so they differ by what the objective bends."""
     for s in filter(lambda s: s.is_reliable, near.sensitivities):
         assert s.slopes["objective"] == pytest.approx(s.envelope, rel=0.05, abs=0.002 * near.figures["objective"])
 
 
-def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: Study, candidate: Candidate) -> None:
+def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: SensitivityStudy, candidate: Candidate) -> None:
     """By the definition, at ten times the knots; one limit of a person's joint is up to twice the other."""
     for agent in candidate.at(
         np.linspace(0.0, candidate.problem.task.duration, 10 * candidate.spline.intervals + 1)
@@ -206,7 +209,7 @@ def test_what_never_is_in_proportion_is_marked_with_the_reason(
     assert any(line.startswith("  duration +0.1 s: effort human") for line in lines)
 
 
-def test_shares_sum_to_one_whatever_changes(near: Study) -> None:
+def test_shares_sum_to_one_whatever_changes(near: SensitivityStudy) -> None:
     assert near.figures["share human"] + near.figures["share robot"] == pytest.approx(1.0)
     for s in near.sensitivities:
         assert s.slopes["share human"] == pytest.approx(-s.slopes["share robot"], abs=1e-6)
@@ -224,17 +227,18 @@ def test_free_and_impossible_parameters_are_left_out_with_a_reason(replanner: Re
     assert "must be a number from 0" in found.left_out[1][1]
 
 
-def test_command_tells_writes_and_takes_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    shipped = load_scenario("table5_free", ENTRIES)
-    (tmp_path / "scenario.toml").write_text(shipped.to_toml(), encoding="utf-8")
-    assert main(["sensitivity", str(tmp_path), "--plot", str(tmp_path / "bars.svg")]) == 0
+def test_command_tells_writes_and_takes_a_result(
+    solved: Callable[..., Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = solved("table5_free", *ENTRIES).folder
+    assert main(["sensitivity", str(folder), "--plot", str(tmp_path / "bars.svg")]) == 0
     text = capsys.readouterr().out
     for word in ("stature", "object mass", "duration", "grasp from feet is left out"):
         assert word in text
     assert "object mass" in (tmp_path / "bars.svg").read_text(encoding="utf-8")
 
 
-def test_json_holds_every_slope(near: Study) -> None:
+def test_json_holds_every_slope(near: SensitivityStudy) -> None:
     found = json.loads(json.dumps(study_dict(near), allow_nan=False))
     mass = next(p for p in found["parameters"] if p["keys"] == ["human.mass"])
     assert mass["slopes"].keys() == found["figures"].keys()

@@ -19,7 +19,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.studies.parameters import parameters_of
 from liftopt.studies.pareto import Front, Point, pareto_front
 from liftopt.studies.pareto_plot import pareto_figure
-from liftopt.studies.sensitivity import Sensitivity, Study
+from liftopt.studies.sensitivity import Sensitivity, SensitivityStudy
 from liftopt.studies.sensitivity_plot import sensitivity_figure
 from liftopt.viz.plots_style import STYLE
 
@@ -117,7 +117,7 @@ def test_a_front_is_between_the_person_and_the_first_robot_or_whom_one_says(
         assert [sum(weights) for weights in front.missing] == pytest.approx([total, total])
 
 
-def _study(team: Any) -> Study:
+def _study(team: Any) -> SensitivityStudy:
     agents = team.agents
     figures = {"objective": 100.0}
     for i, agent in enumerate(agents):
@@ -128,7 +128,7 @@ def _study(team: Any) -> Study:
         Sensitivity(parameter, 1.0, parameter.change, {name: 0.5 * value for name, value in figures.items()}, 1.0)
         for parameter in parameters_of(team.solution.scenario)
     ]
-    return Study(_candidate(team), figures, busiest, tuple(rows), ())
+    return SensitivityStudy(_candidate(team), figures, busiest, tuple(rows), ())
 
 
 def test_parameters_are_everybodys_by_name(team_solution: Teams) -> None:

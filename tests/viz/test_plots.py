@@ -13,10 +13,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from liftopt.errors import InputError
+from liftopt.multibody.joint_curves import ANATOMY, human_curves, robot_curves
 from liftopt.multibody.person.range_of_motion import RANGES
 from liftopt.solution.grasp_loads import shares
 from liftopt.viz import FORMATS
-from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
 from liftopt.viz.plots import drawn, plots_of, rendered, write_plots
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import LINES

@@ -16,12 +16,12 @@ from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.meant import the_person, the_robot
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.robot.robot_record import RobotRecord
+from liftopt.multibody.joint_curves import ANATOMY, human_curves, robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import refined
 from liftopt.solution.solution import Solution
-from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
 
 Array = npt.NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 import xarray as xr
 
-from liftopt import face
 from liftopt.errors import InputError
+from liftopt.face import lift as face
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 

@@ -1,4 +1,4 @@
-"""The joints of Table 2 in an anatomist's words and signs: flexion, abduction, pronation positive."""
+"""Joints over time as they are read: Table 2's in an anatomist's words and signs, a robot's by its maker's names."""
 
 from __future__ import annotations
 
