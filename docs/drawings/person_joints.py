@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from drawings.motions import Motion, show
 from drawings.stage import agents, bodies, default_lift
-from liftopt.viz.anatomy import JointCurve, human_curves
+from liftopt.multibody.joint_curves import JointCurve, human_curves
 from liftopt.viz.plots_style import Array
 
 

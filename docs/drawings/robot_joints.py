@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from drawings.motions import Motion, fill, show
 from drawings.stage import agents, bodies, default_lift, paint_bodies
-from liftopt.viz.anatomy import robot_curves
+from liftopt.multibody.joint_curves import robot_curves
 from liftopt.viz.outlines import VIEWS
 from liftopt.viz.plots_style import BLUE, Array
 
