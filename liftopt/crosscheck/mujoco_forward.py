@@ -26,7 +26,7 @@ import numpy.typing as npt
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.multibody.mujoco_model import States, import_mujoco, spec_of, states_of
 from liftopt.scenario.build import agents_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -127,7 +127,7 @@ class Simulation:
     @cached_property
     def _dense(self) -> Solution:
         interval = float(self.solution.time[1] - self.solution.time[0])
-        return refined(self.solution, int(np.ceil(interval / TIME_STEP - 1e-9)))
+        return resample(self.solution, int(np.ceil(interval / TIME_STEP - 1e-9)))
 
     @property
     def _step(self) -> float:

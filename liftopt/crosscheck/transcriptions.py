@@ -32,7 +32,7 @@ from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -133,7 +133,7 @@ def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Prob
     """Return the solve's own optimum on another mesh, started from the solution."""
     spline = motions_of(solution.scenario, intervals)
     problem = Problem(team, task_of(solution.scenario), spline.mesh())
-    dense = refined(solution, max(4, 4 * intervals // solution.intervals))
+    dense = resample(solution, max(4, 4 * intervals // solution.intervals))
     coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.object.pose])
     phase = dense.time / dense.time[-1]
     force = np.hstack([agent.grasp_force for agent in solution.agents])

@@ -20,10 +20,10 @@ def between_knots(solution: Solution) -> Solution:
 
     Limits hold at the knots only, so that a peak between them can be larger than any at them.
     """
-    return refined(solution, FINER)
+    return resample(solution, FINER)
 
 
-def refined(solution: Solution, factor: int) -> Solution:
+def resample(solution: Solution, factor: int) -> Solution:
     """Return ``solution`` at ``factor`` times as many intervals; the knots stay among the times.
 
     Accelerations and grasp forces are linear between knots, so that velocities and positions follow exactly; torques

@@ -19,7 +19,7 @@ from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
 from liftopt.lab.robot.ros_messages import FEEDBACK, JOINT_STATE, LOG, SECOND, RosMessages
 from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -42,7 +42,7 @@ def solution(request: pytest.FixtureRequest, solved: Callable[..., Any]) -> Solu
 
 @pytest.fixture(scope="module")
 def plan(solution: Solution) -> Plan:
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     robot = dense.agents[1]
     return dense.time, robot.q[:, robot.moving]
 

@@ -16,7 +16,7 @@ from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.robot.robot_record import RobotRecord
 from liftopt.scenario.build import agent_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
 
@@ -70,7 +70,7 @@ def experiment(
         raise InputError("RESULT", solution.status, "must be a solved and verified lift to be compared")
     if not (mocap or forces or robot):
         raise InputError("compare", NO_VALUE, "needs recordings: --mocap, --forces or --robot")
-    dense = refined(solution, FACTOR)
+    dense = resample(solution, FACTOR)
     notes: list[str] = []
     found = [
         *_person(dense, mocap, notes),

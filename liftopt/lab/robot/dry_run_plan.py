@@ -16,7 +16,7 @@ from liftopt.lab.robot.simulated_arm import STEP
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.multibody.trajectory import agent_trajectory, cross
 from liftopt.scenario.build import agent_of, object_of
-from liftopt.solution.interpolation import linear, refined
+from liftopt.solution.interpolation import linear, resample
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -48,7 +48,7 @@ class Plan:
     def of(cls, solution: Solution) -> Plan:
         """Return the plan of a solved lift."""
         interval = float(solution.time[1] - solution.time[0])
-        dense = refined(solution, max(1, round(interval / STEP / 2)))
+        dense = resample(solution, max(1, round(interval / STEP / 2)))
         robot = dense.agents[1]
         force, moment, torque = -robot.grasp_force, -robot.grasp_moment, JOINT_SIGNS * robot.tau[:, robot.moving]
         before, after = (_at_rest(dense, k) for k in (0, -1))
