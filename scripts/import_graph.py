@@ -30,19 +30,20 @@ def modules(root: Path) -> dict[str, Path]:
 def file_graph(root: Path) -> Graph:
     """Return which module imports which others of the package."""
     known = modules(root)
-    return {name: set(_imported(path, known)) - {name} for name, path in known.items()}
+    return {name: set(_imported(name, path, known)) - {name} for name, path in known.items()}
 
 
-def _imported(path: Path, known: Mapping[str, Path]) -> Iterator[str]:
+def _imported(importer: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
+    package = importer.split(".") if path.name == "__init__.py" else importer.split(".")[:-1]
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in known)
         elif isinstance(node, ast.ImportFrom):
-            if node.level:
-                raise ValueError(f"{path}: line {node.lineno} imports relatively, which is not followed")
+            above = package[: len(package) + 1 - node.level] if node.level else []
+            module = ".".join([*above, *([node.module] if node.module else [])])
             for alias in node.names:
-                whole = f"{node.module}.{alias.name}"
-                yield from (name for name in (whole if whole in known else node.module,) if name in known)
+                whole = f"{module}.{alias.name}"
+                yield from (name for name in (whole if whole in known else module,) if name in known)
 
 
 def room(module: str) -> str:
