@@ -33,17 +33,17 @@ def file_graph(root: Path) -> Graph:
     return {name: set(_imported(name, path, known)) - {name} for name, path in known.items()}
 
 
-def _imported(importer: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
-    package = importer.split(".") if path.name == "__init__.py" else importer.split(".")[:-1]
+def _imported(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
+    package = name.split(".") if path.stem == "__init__" else name.split(".")[:-1]
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in known)
         elif isinstance(node, ast.ImportFrom):
-            above = package[: len(package) + 1 - node.level] if node.level else []
-            module = ".".join([*above, *([node.module] if node.module else [])])
+            above = package[: len(package) - node.level + 1] if node.level else []
+            source = ".".join([*above, *([node.module] if node.module else [])])
             for alias in node.names:
-                whole = f"{module}.{alias.name}"
-                yield from (name for name in (whole if whole in known else module,) if name in known)
+                whole = f"{source}.{alias.name}"
+                yield from (found for found in (whole if whole in known else source,) if found in known)
 
 
 def room(module: str) -> str:

@@ -32,15 +32,20 @@ class Solved(NamedTuple):
     folder: Path
 
 
-@pytest.fixture(scope="session")
-def scenario_tables() -> Any:
-    """Return a hypothesis strategy: tables of a scenario whose entries are allowed, each for itself."""
-    spec = spec_from_file_location("scenario_tables", Path(__file__).with_name("scenario_tables.py"))
+def _module(name: str) -> Any:
+    """Return what stands beside this file, which pytest imports by its path."""
+    spec = spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
     assert spec is not None
     assert spec.loader is not None
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.tables()
+    return module
+
+
+@pytest.fixture(scope="session")
+def scenario_tables() -> Any:
+    """Return a hypothesis strategy: tables of a scenario whose entries are allowed, each for itself."""
+    return _module("scenario_tables").tables()
 
 
 @pytest.fixture(scope="session")
@@ -57,6 +62,16 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
         return Solved(solution, folder)
 
     return solve_once
+
+
+@pytest.fixture(scope="session")
+def team_solution(solved: Callable[..., Solved]) -> Callable[[str], Any]:
+    """Return a function that gives a lift and its models by other teams, made without a solver.
+
+    They are ``"two_people"``, anna and ben, and ``"two_robots"``, a human with the Sawyers near and far.
+    """
+    module, pattern = _module("teams"), solved("table5", "solver.intervals=10", "solver.starts=1").solution
+    return cache(lambda name: module.made(name, pattern))
 
 
 def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:

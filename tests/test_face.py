@@ -26,7 +26,7 @@ def test_what_is_solved_is_saved_loaded_and_shown(
     solved: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = solved("table5", *CHEAP).solution
-    monkeypatch.setattr("liftopt.search.solve.lift", lambda scenario, progress=None: found)
+    monkeypatch.setattr("liftopt.search.solve.solve", lambda scenario, progress=None: found)
     solution = face.solve(found.scenario)
     assert isinstance(solution, face.Solution)
     assert solution["robot"].tau.shape == (21, 10)

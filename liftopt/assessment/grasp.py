@@ -7,13 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from liftopt.assessment.joints import ALL_ALONG, AT_LIMIT
-from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.assessment.who import Who, listed, who_is
+from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
+from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.solution import Solution
-from liftopt.solution.summary import GRAVITY, shares, squeeze
 
 
-def cap_findings(fine: Solution, agent: AgentTrajectory, subject: str) -> Iterator[Finding]:
+def cap_findings(fine: Solution, agent: AgentTrajectory, who: Who) -> Iterator[Finding]:
     """Give the largest force of an agent's grasp, and its largest moment if it transmits any, beside their caps."""
     caps = [("force", agent.grasp_force, fine.scenario.limits.max_grasp_force, "N", "limits.max_grasp_force")]
     if agent.grasp.moments:
@@ -22,15 +23,15 @@ def cap_findings(fine: Solution, agent: AgentTrajectory, subject: str) -> Iterat
     for what, vectors, cap, unit, key in caps:
         size = np.linalg.norm(vectors, axis=1)
         k, at = int(np.argmax(size)), size >= (1 - AT_LIMIT) * cap
-        who = "hand" if subject == PERSON else "gripper"
-        text = f"The {who}'s {what} is {size[k]:.3g} {unit} at most, at {fine.time[k]:.2f} s"
+        whose = f"The {who.hand}'s {what}" if who.is_alone else f"The {what} of {who.name}'s {who.hand}"
+        text = f"{whose} is {size[k]:.3g} {unit} at most, at {fine.time[k]:.2f} s"
         if at.any():
             text += (
                 f", its cap, for {100 * at.mean():.0f} % of the lift: only {key} = {cap:g} {unit} holds it back, and "
                 "the motion rests on that choice"
             )
         yield Finding(
-            f"{subject}.grasp_{what}",
+            f"{who.subject}.grasp_{what}",
             WARNING if size[k] > (1 + AT_LIMIT) * cap else CAUTION if at.any() else INFO,
             f"grasp {what} at its cap" if at.any() else f"grasp {what} up to {size[k]:.3g} {unit}",
             f"{text}.",
@@ -38,14 +39,17 @@ def cap_findings(fine: Solution, agent: AgentTrajectory, subject: str) -> Iterat
         )  # fmt: skip
 
 
-def squeeze_finding(fine: Solution) -> Finding:
-    """Return how hard the two press or pull against each other; more than the object weighs is a warning."""
-    squeezed = squeeze(fine.agents)
+def squeeze_finding(fine: Solution, person: AgentTrajectory) -> Finding:
+    """Return how hard a person's hand and the others work against each other.
+
+    More than the object weighs is a warning.
+    """
+    squeezed = squeeze(fine.agents, person.name)
     k, weight = int(np.argmax(np.abs(squeezed))), fine.scenario.object.mass * GRAVITY
     peak, name = abs(float(squeezed[k])), fine.object.name
     verb = f"press the {name} together" if squeezed[k] > 0 else f"pull the {name} apart"
     than = f"{'' if peak > weight else 'not '}more than its weight of {weight:.0f} N"
-    text = f"Hand and gripper {verb} with {peak:.0f} N at {fine.time[k]:.2f} s, {than}."
+    text = f"{_pair(fine, person)} {verb} with {peak:.0f} N at {fine.time[k]:.2f} s, {than}."
     if peak > weight:
         text += " That lifts nothing, and few would do it unasked; a higher objective.force_weight lowers it."
     return Finding(
@@ -53,17 +57,26 @@ def squeeze_finding(fine: Solution) -> Finding:
         WARNING if peak > weight else INFO,
         f"hands against each other with {peak:.0f} N",
         text,
-        fine.agents[0].name, None, float(fine.time[k]), peak, float(weight), "N", f"weight of the {name}",
+        person.name, None, float(fine.time[k]), peak, float(weight), "N", f"weight of the {name}",
     )  # fmt: skip
 
 
-def share_finding(fine: Solution) -> Finding:
-    """Return which part of the load the person carries; that one presses down what the other lifts is a caution.
+def _pair(fine: Solution, person: AgentTrajectory) -> str:
+    """Return a person's hand and those that it works against, as the first words of a sentence."""
+    if len(fine.persons) == len(fine.robots) == 1:
+        return "Hand and gripper"
+    called = {agent.name: who_is(agent, fine.agents).called for agent in fine.agents}
+    own = called.pop(person.name)
+    return f"The hand of {own} and {'that' if len(called) == 1 else 'those'} of {listed(called.values())}"
+
+
+def share_finding(fine: Solution, person: AgentTrajectory, who: Who) -> Finding:
+    """Return which part of the load a person carries; that one presses down what others lift is a caution.
 
     From the object's weight on it is a warning, as a squeeze is.
     """
-    person, share = fine.agents[0], shares(fine.agents)[0]
-    source = "vertical grasp force over that of both"
+    share = shares(fine.agents)[[agent.name for agent in fine.agents].index(person.name)]
+    source = f"vertical grasp force over that of {'both' if len(fine.agents) == 2 else 'all'}"
     if not np.isfinite(share).any():
         text = "There is no load to share."
         return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
@@ -71,13 +84,14 @@ def share_finding(fine: Solution) -> Finding:
     up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
     down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.object.mass * GRAVITY
     name, against = fine.object.name, down > AT_LIMIT * weight
-    pressed = f"; one of them presses the {name} down with up to {down:.0f} N while the other lifts" if against else ""
+    lift = "the other lifts" if len(fine.agents) == 2 else "others lift"
+    pressed = f"; one of them presses the {name} down with up to {down:.0f} N while {lift}" if against else ""
     title = f"carries {low:.0f} to {100 * share[k]:.0f} % of the load, {100 * np.nanmean(share):.0f} % on average"
     return Finding(
         f"{PERSON}.load_share",
         WARNING if down > weight else CAUTION if against else INFO,
         title,
-        f"The person {title}; most at {fine.time[k]:.2f} s{pressed}.",
+        f"The {who.told} {title}; most at {fine.time[k]:.2f} s{pressed}.",
         person.name,
         value=float(share[k]),
         unit="share of the vertical force",

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.assessment.who import Who
+from liftopt.multibody.trajectory import AgentTrajectory, limit_share
 from liftopt.solution.finding import CAUTION, INFO, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
-from liftopt.solution.summary import joint_meaning, limit_share
 
 Array = npt.NDArray[np.float64]
 Directions = Mapping[tuple[str, int], str]
@@ -26,21 +26,23 @@ class Words:
     """How the joints of an agent are told.
 
     Attributes:
-        subject: of the codes, ``"person"`` or ``"robot"``.
+        who: whose they are.
         torque: the last part of the code for a torque.
         limit: whose limit on torque it is, ``"strength"`` or ``"torque limit"``.
         source: of the limits on speed, and of those that have none of their own.
         motions: what a joint does in its negative (-1) and positive (+1) direction, by name without the agent's.
+        meanings: of joints whose motions have no names, likewise.
         torque_sources, range_sources: of the limits on torque and angle in these directions.
     """
 
-    subject: str
+    who: Who
     torque: str
     limit: str
     source: str
-    motions: Directions
-    torque_sources: Directions
-    range_sources: Directions
+    motions: Directions = field(default_factory=dict)
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    torque_sources: Directions = field(default_factory=dict)
+    range_sources: Directions = field(default_factory=dict)
 
 
 def joint_findings(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
@@ -65,14 +67,14 @@ def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[F
         if peak < NEAR_LIMIT and peak < peaks.max():
             continue
         sign = 1 if tau[k, row] >= 0 else -1
-        joint = _joint(fine, agent, name, sign, words)
+        joint = _joint(agent, name, sign, words)
         severity = WARNING if peak >= 1 - AT_LIMIT else CAUTION if peak >= NEAR_LIMIT else INFO
         near = 100 * float((share[:, row] >= NEAR_LIMIT).mean())
         beyond = "" if peak <= 1 + AT_LIMIT else ", more than there is: limits hold at the knots only"
         limit = agent.limits.tau_upper[row] if sign > 0 else -agent.limits.tau_lower[row]
         long = f"; above {100 * NEAR_LIMIT:.0f} % for {near:.0f} % of the lift" if near else ""
         yield Finding(
-            f"{words.subject}.{words.torque}",
+            f"{words.who.subject}.{words.torque}",
             severity,
             f"{joint} at {percent(peak)} % of its {words.limit}",
             f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {percent(peak)} % of "
@@ -90,11 +92,11 @@ def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
         peak, limit = float(share[k, row]), float(np.degrees(agent.limits.velocity[row]))
         if peak < 1 - AT_LIMIT and row != largest:
             continue
-        joint = _joint(fine, agent, name, 0, words)
+        joint = _joint(agent, name, 0, words)
         part = float((share[:, row] >= 1 - AT_LIMIT).mean())
         severity = WARNING if peak > 1 + AT_LIMIT else CAUTION if peak >= 1 - AT_LIMIT else INFO
         yield Finding(
-            f"{words.subject}.speed",
+            f"{words.who.subject}.speed",
             severity,
             f"{joint} at {percent(peak)} % of its speed limit",
             f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {percent(peak)} "
@@ -112,12 +114,12 @@ def _angles(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
             k, at = int(np.argmax(beyond)), beyond >= -margin
             if not at.any():
                 continue
-            joint, exceeded = _joint(fine, agent, name, sign, words), bool(beyond[k] > margin)
+            joint, exceeded = _joint(agent, name, sign, words), bool(beyond[k] > margin)
             part = float(at.mean())
             severity = WARNING if exceeded else CAUTION if part >= ALL_ALONG else INFO
             where = f"{beyond[k]:.2g} deg beyond" if exceeded else "at"
             yield Finding(
-                f"{words.subject}.range",
+                f"{words.who.subject}.range",
                 severity,
                 f"{joint} {where} the end of its range",
                 f"{_first(joint, words)} comes to {round(q[k, row], 1) + 0.0:.1f} deg, {where} the end of its "
@@ -133,16 +135,16 @@ def _along(part: float) -> str:
     return f", there for {100 * part:.0f} % of the lift" if part else ""
 
 
-def _joint(fine: Solution, agent: AgentTrajectory, name: str, sign: int, words: Words) -> str:
+def _joint(agent: AgentTrajectory, name: str, sign: int, words: Words) -> str:
     """Return a joint in its user's words: the motion in a direction (0: none), and its name in the paper's tables."""
     short = _short(agent, name)
-    motion = words.motions.get((short, sign)) or joint_meaning(agent.kind, fine.scenario.first("robot").model, short)
+    motion = words.motions.get((short, sign)) or words.meanings.get(short, "")
     return f"{motion.removesuffix(' (-)').lstrip('-')} ({short})" if motion else short
 
 
 def _first(joint: str, words: Words) -> str:
-    """Return a joint as the first words of a sentence; a robot's names are written as they are."""
-    return joint[0].upper() + joint[1:] if words.motions else joint
+    """Return a joint as the first words of a sentence, and whose it is; a robot's names are written as they are."""
+    return (joint[0].upper() + joint[1:] if words.motions else joint) + words.who.of
 
 
 def _short(agent: AgentTrajectory, name: str) -> str:

@@ -6,12 +6,15 @@ from collections.abc import Iterator
 
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
+from liftopt.assessment.who import Who
+from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
 from liftopt.ergonomics.rula import ACTION
+from liftopt.multibody.joint_meanings import HUMAN_JOINTS
 from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
 from liftopt.multibody.person.strength import STRENGTHS
-from liftopt.scenario.build import subject_of
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
 
@@ -19,33 +22,34 @@ CHANGE, INVESTIGATE = 5, 3  # grand scores from which RULA asks for a change, an
 UNSURE = ("unverified", "estimate")
 
 
-def person_findings(fine: Solution) -> Iterator[Finding]:
-    """Give what is to be said of the person in a solution between its knots too."""
-    person, ergonomics = fine.agents[0], ergonomics_of(fine)
-    yield from joint_findings(fine, person, _words())
+def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterator[Finding]:
+    """Give what is to be said of a person in a solution between its knots too; ``who`` is how they are told."""
+    ergonomics = ergonomics_of(fine, person)
+    yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:
-        yield _posture(fine, ergonomics, measure) if measure.code == "posture" else _guide(fine, measure)
-    yield squeeze_finding(fine)
-    yield share_finding(fine)
-    yield from cap_findings(fine, person, PERSON)
-    yield _data(fine)
+        yield _posture(who, ergonomics, measure) if measure.code == "posture" else _guide(who, measure)
+    if len(fine.agents) > 1:
+        yield squeeze_finding(fine, person)
+    yield share_finding(fine, person, who)
+    yield from cap_findings(fine, person, who)
+    yield _data(fine, who)
 
 
-def _words() -> Words:
+def _words(who: Who) -> Words:
     motions = {(item.joint, item.sign): item.motion for item in STRENGTHS}
     strength = {(item.joint, item.sign): item.source.told for item in STRENGTHS}
     ranges = {(item.joint, -1): item.lower_source.told for item in RANGES}
     ranges |= {(item.joint, 1): item.upper_source.told for item in RANGES}
-    return Words(PERSON, "strength", "strength", VELOCITY_SOURCE.told, motions, strength, ranges)
+    return Words(who, "strength", "strength", VELOCITY_SOURCE.told, motions, HUMAN_JOINTS, strength, ranges)
 
 
-def _posture(fine: Solution, ergonomics: Ergonomics, measure: Measure) -> Finding:
+def _posture(who: Who, ergonomics: Ergonomics, measure: Measure) -> Finding:
     scores = ergonomics.rula
     worst, parts = int(scores.grand.max()), scores.at(scores.worst)
     words = ", ".join(
         f"{name.replace('_', ' ')} {parts[name]}" for name in ("upper_arm", "lower_arm", "wrist", "trunk")
     )
-    text = f"The posture scores RULA {worst} of 7 at {measure.time:.2f} s ({words}): {ACTION[worst]}"
+    text = f"The posture{who.of} scores RULA {worst} of 7 at {measure.time:.2f} s ({words}): {ACTION[worst]}"
     if worst >= CHANGE:
         text += f"; {CHANGE} or more for {100 * float((scores.grand >= CHANGE).mean()):.0f} % of the lift"
     return Finding(
@@ -53,11 +57,11 @@ def _posture(fine: Solution, ergonomics: Ergonomics, measure: Measure) -> Findin
         WARNING if worst >= CHANGE else CAUTION if worst >= INVESTIGATE else INFO,
         f"posture RULA {worst} of 7, {ACTION[worst]}",
         f"{text}.",
-        fine.agents[0].name, None, measure.time, measure.value, None, measure.unit, measure.source.told,
+        who.name, None, measure.time, measure.value, None, measure.unit, measure.source.told,
     )  # fmt: skip
 
 
-def _guide(fine: Solution, measure: Measure) -> Finding:
+def _guide(who: Who, measure: Measure) -> Finding:
     """Return what a lifting guide says; beyond its limit, or where it knows none, is a warning."""
     name, severity, title = measure.name, INFO, f"{measure.name} not evaluated"
     if measure.value is not None and measure.limit is None:
@@ -70,24 +74,26 @@ def _guide(fine: Solution, measure: Measure) -> Finding:
         f"{PERSON}.{measure.code}",
         severity,
         title,
-        f"{name} ({measure.scope}): {measure.result}. {measure.reading}",
-        fine.agents[0].name, None, measure.time, measure.value, measure.limit, measure.unit, measure.source.told,
+        f"{name}{_for(who)} ({measure.scope}): {measure.result}. {measure.reading}",
+        who.name, None, measure.time, measure.value, measure.limit, measure.unit, measure.source.told,
     )  # fmt: skip
 
 
-def _data(fine: Solution) -> Finding:
-    strengths = [
-        item for item in subject_quantities(subject_of(fine.scenario.first("person"))) if item.group == "strength"
-    ]
+def _for(who: Who) -> str:
+    return "" if who.is_alone else f" for {who.name}"
+
+
+def _data(fine: Solution, who: Who) -> Finding:
+    strengths = [item for item in subject_quantities(subject_in(fine, who.name)) if item.group == "strength"]
     weak = [item for item in strengths if item.source.confidence in UNSURE]
     part = f"{len(weak)} of {len(strengths)} strength limits"
     return Finding(
         f"{PERSON}.strength_data",
         INFO,
         f"{part} not checked at their source",
-        f"{part} could not be checked at their source. They are typical values of the 50th percentile, not of one "
-        "person; every share of strength inherits that.",
-        fine.agents[0].name,
+        f"{part}{who.of} could not be checked at their source. They are typical values of the 50th percentile, not of "
+        "one person; every share of strength inherits that.",
+        who.name,
         value=float(len(weak)),
         source="; ".join(dict.fromkeys(item.source.told for item in weak)),
     )

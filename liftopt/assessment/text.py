@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from shlex import quote
 from textwrap import wrap
 from typing import NamedTuple
 
+from liftopt.assessment.who import listed
+from liftopt.scenario.agents import Person
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import edge_heights
+from liftopt.scenario.placement import edge_heights, lead, partner
 from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -58,25 +60,49 @@ def details_text(assessment: Assessment) -> str:
 
 def _headline(assessment: Assessment) -> str:
     judged = [verdict for verdict in assessment.verdicts if verdict.subject != MATHEMATICS]
-    told = [f"{WORDS[verdict.severity]} for the {verdict.subject}" for verdict in judged if verdict.severity != INFO]
-    return ", ".join(told) or "person and robot within limits"
+    told = [
+        f"{WORDS[verdict.severity]} for the {_told(verdict, judged)}" for verdict in judged if verdict.severity != INFO
+    ]
+    subjects = sorted(verdict.subject for verdict in judged)
+    return ", ".join(told) or f"{'person and robot' if subjects == [PERSON, ROBOT] else 'everybody'} within limits"
+
+
+def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
+    """Return who a verdict is on: a subject, and the name where there are several of the kind."""
+    several = sum(other.subject == verdict.subject for other in verdicts) > 1
+    return f"{verdict.subject} {verdict.agent}" if several else verdict.subject
 
 
 def _scenario(scenario: Scenario) -> list[str]:
+    box, task = scenario.object, scenario.task
     start, end = edge_heights(scenario)
-    human, robot, table, task = scenario.first("person"), scenario.first("robot"), scenario.object, scenario.task
     return _wrapped(
-        f"{human.sex} {human.stature:g} m, {human.mass:g} kg and {robot.model} lift {table.mass:g} kg ({table.depth:g} "
-        f"x {table.width:g} x {table.height:g} m) from {start:g} to {end:g} m (height of the "
-        f"edges they hold) in {scenario.duration:g} s, standing {task.standing_distance:g} m apart"
+        f"{listed(_described(scenario))} lift {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) from "
+        f"{start:g} to {end:g} m (height of the edges they hold) in {scenario.duration:g} s, "
+        f"{_apart(scenario)}standing {task.standing_distance:g} m apart"
     )
+
+
+def _described(scenario: Scenario) -> Iterator[str]:
+    """Give everybody who lifts in a few words, by name where there are several of the kind."""
+    kinds = [agent.kind for agent in scenario.agents.values()]
+    for name, agent in scenario.agents.items():
+        what = f"{agent.sex} {agent.stature:g} m, {agent.mass:g} kg" if isinstance(agent, Person) else agent.model
+        yield what if kinds.count(agent.kind) == 1 else f"{name} ({what})"
+
+
+def _apart(scenario: Scenario) -> str:
+    """Return whose distance is told, where more than two lift."""
+    other = partner(scenario)
+    return f"{lead(scenario)} and {other} " if len(scenario.agents) > 2 else ""
 
 
 def _verdicts(assessment: Assessment, told: Callable[[Finding], list[str]]) -> Iterator[Part]:
     """Give the verdicts, each with what it rests on, the gravest first."""
     for verdict in assessment.verdicts:
-        subject, found = verdict.subject, assessment.about(verdict.subject)
-        yield Part(HEAD, [f"{'Solve' if subject == MATHEMATICS else subject.capitalize()}: {_word(verdict)}"])
+        subject, found = verdict.subject, assessment.about(verdict.subject, verdict.agent)
+        who = _told(verdict, assessment.verdicts)
+        yield Part(HEAD, [f"{'Solve' if subject == MATHEMATICS else who[0].upper() + who[1:]}: {_word(verdict)}"])
         always = [f"{subject}.{code}" for code in ALWAYS[subject]]
         for finding in found:
             if finding.severity != INFO:
@@ -129,7 +155,7 @@ def _caveats(assessment: Assessment) -> list[str]:
     told = [
         finding.title for finding in assessment if finding.code in (f"{PERSON}.strength_data", "clearance.not_checked")
     ]
-    return _wrapped("; ".join(told).capitalize()) if told else []
+    return _wrapped("; ".join(dict.fromkeys(told)).capitalize()) if told else []
 
 
 def _where(folder: Path | None) -> Iterable[str]:

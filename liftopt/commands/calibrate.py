@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from liftopt.commands.record import add_divider_arguments, divider_of
+from liftopt.commands.terminal import printing
 
 
-def add_calibrate_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_calibrate_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "calibrate",
         help="make a calibration of force sensors from voltage-weight series",
@@ -23,7 +23,7 @@ def add_calibrate_parser(commands: Any, run: Callable[[argparse.Namespace], int]
     parser.add_argument("series", nargs="+", metavar="SERIES", help="CSV with one series or more")
     parser.add_argument("--out", required=True, metavar="CAL", help="calibration to write (TOML); it must not exist")
     add_divider_arguments(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(calibrate_text))
 
 
 def calibrate_text(args: argparse.Namespace) -> str:

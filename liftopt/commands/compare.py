@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from liftopt.commands.console_text import captured
 from liftopt.commands.record import add_divider_arguments, add_unloaded_argument, calibration_of, unloaded_of
+from liftopt.commands.terminal import captured, printing
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
 WIDEST = 27  # of a quantity's name; the tables stand below each other
 
 
-def add_compare_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_compare_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "compare",
         help="put recordings of a lift beside its prediction",
@@ -47,11 +46,13 @@ def add_compare_parser(commands: Any, run: Callable[[argparse.Namespace], int]) 
     parser.add_argument(
         "--robot", nargs="+", default=[], metavar="BAG", help="with sensor_msgs/JointState, one a trial (ROS 1 or 2)"
     )
+    parser.add_argument("--person", metavar="NAME", help="whom --mocap and --forces are of, where several lift")
+    parser.add_argument("--robot-name", metavar="NAME", help="whose --robot is, where the lift has several")
     parser.add_argument("--out", metavar="DIR", required=True, help="folder to write; it must not exist")
     parser.add_argument("--report", action="store_true", help="add the report of the lift with the experiment in it")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     add_divider_arguments(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(compare_text))
 
 
 def compare_text(args: argparse.Namespace) -> str:
@@ -77,9 +78,10 @@ def compare_text(args: argparse.Namespace) -> str:
             for kind in FORMATS:
                 (folder / f"{plot.name}.{kind}").write_bytes(rendered(figure, kind))
         if args.report:
+            from liftopt.lab.comparison.section import experiment_section
             from liftopt.viz.report import write_report
 
-            write_report(solution, folder / "report.html", found)
+            write_report(solution, folder / "report.html", [experiment_section(found)])
     return _json(summary) if args.json else captured(lambda console: _print(found, args.out, console))
 
 
@@ -101,6 +103,8 @@ def _experiment(args: argparse.Namespace, solution: Solution) -> Experiment:
         forces=[one for path in args.forces for one in read_forces(Path(path), calibration, unloaded)],
         robot=[read_robot_record(Path(path)) for path in args.robot],
         forces_lift=span,
+        person=args.person,
+        robot_name=args.robot_name,
     )
 
 

@@ -7,13 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from liftopt.commands.export import add_goal_time
+from liftopt.commands.export import add_goal_time, add_robot_name
+from liftopt.commands.terminal import telling
 
 MODES = ("velocity", "position", "position_w_id", "torque")
 
 
-def add_dry_run_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_dry_run_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "dry-run",
         help="simulate what the robot would really do",
@@ -34,7 +35,8 @@ def add_dry_run_parser(commands: Any, run: Callable[[argparse.Namespace], int]) 
     parser.add_argument("--trials", type=int, default=3, metavar="N", help="how many (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what differs between trials (default: 0)")
     add_goal_time(parser)
-    parser.set_defaults(run=run)
+    add_robot_name(parser)
+    parser.set_defaults(run=telling(dry_run_text))
 
 
 def dry_run_text(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
@@ -53,13 +55,17 @@ def dry_run_text(args: argparse.Namespace, progress: Callable[[str], None] | Non
     seed = int(checked_number("--seed", args.seed, 0, 2**32, "(a whole number)"))
     goal_time = checked_number("--goal-time", args.goal_time, 0.0, 120.0, "s")
     from liftopt.files.new_folder import new_folder
+    from liftopt.lab.meant import the_robot
     from liftopt.lab.robot.dry_run import dry_run
     from liftopt.lab.robot.dry_run_files import write_dry_run
-    from liftopt.lab.robot.dry_run_summary import summarised, summary_text
+    from liftopt.lab.robot.dry_run_summary import reach_to_others, summarised, summary_text
 
     solution, out = load_result(args.result), Path(args.out)
     with new_folder("--out", out) as folder:
-        run = dry_run(solution, args.mode, goal_time, trials, seed, progress)
-        summary = summarised(run, solution.scenario.object.depth)
+        robot = the_robot(solution, args.robot).name
+        run = dry_run(solution, args.mode, goal_time, trials, seed, progress, robot)
+        summary = summarised(run, reach_to_others(solution.scenario, robot))
         names = write_dry_run(run, summary, folder)
-    return f"{summary_text(summary)}\nWritten to {out}: {', '.join(names)}\n"
+    others = [agent.kind for agent in solution.agents if agent.name != robot]
+    followers = "The person's hand is" if others == ["person"] else "What the others hold is"
+    return f"{summary_text(summary, followers)}\nWritten to {out}: {', '.join(names)}\n"

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+from liftopt.commands.terminal import printing
 
 MODES = ("velocity", "position", "position_w_id")
 FORMATS = ("ros1", "ros2", "mcap", "csv", "json")
@@ -15,8 +16,8 @@ FORMATS = ("ros1", "ros2", "mcap", "csv", "json")
 GOAL_TIME = 3.0
 
 
-def add_export_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_export_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "export",
         help="write the robot's motion as ROS bags, CSV and JSON",
@@ -47,8 +48,9 @@ def add_export_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
         help="of the action server, which says how far the arm may be from the start (default: %(default)s, its own)",
     )
     add_goal_time(parser)
+    add_robot_name(parser)
     parser.add_argument("--json", action="store_true", help="print what was written, and the notes, as one JSON object")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(export_text))
 
 
 def add_goal_time(parser: argparse.ArgumentParser) -> None:
@@ -60,6 +62,11 @@ def add_goal_time(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="how long the action server may go on towards the last point (default: %(default)s)",
     )
+
+
+def add_robot_name(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says which robot is meant."""
+    parser.add_argument("--robot", metavar="NAME", help="which robot, where the lift has several")
 
 
 def export_text(args: argparse.Namespace) -> str:
@@ -92,10 +99,10 @@ def export_text(args: argparse.Namespace) -> str:
     from liftopt.lab.robot.trajectory_files import write_trajectory
 
     solution = load_result(args.result)
-    trajectory = joint_trajectory(solution, args.rate)
-    check_limits(solution)
+    trajectory = joint_trajectory(solution, args.rate, args.robot)
+    check_limits(solution, args.robot)
     check_motion(trajectory)
-    off_plan = check_server(solution, trajectory, args.rate)
+    off_plan = check_server(solution, trajectory, args.rate, args.robot)
     notes = list(remarks(trajectory))
     if off_plan > OFF_PLAN:
         notes.append(

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from liftopt.commands.record import add_divider_arguments, add_unloaded_argument, calibration_of, unloaded_of
+from liftopt.commands.terminal import printing
 
 
-def add_forces_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_forces_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "forces",
         help="the hand's force from a recording of force sensors",
@@ -24,7 +24,7 @@ def add_forces_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
     parser.add_argument("--out", metavar="FILE", help="CSV in newtons to write; it must not exist")
     add_unloaded_argument(parser)
     add_divider_arguments(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(forces_text))
 
 
 def forces_text(args: argparse.Namespace) -> str:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from liftopt.commands.console_text import captured
+from liftopt.commands.terminal import captured, printing
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -19,8 +18,8 @@ if TYPE_CHECKING:
     from liftopt.lab.mocap.recorded_lift import RecordedLift
 
 
-def add_mocap_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_mocap_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "mocap",
         help="joint angles and torques of a recorded lift, from its markers",
@@ -82,7 +81,7 @@ def add_mocap_parser(commands: Any, run: Callable[[argparse.Namespace], int]) ->
         "--lift", type=int, metavar="N", help="which lift of the trial counts, from 1, where there are several"
     )
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(mocap))
 
 
 def mocap(args: argparse.Namespace) -> str:

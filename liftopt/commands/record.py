@@ -11,6 +11,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from liftopt.commands.exit_status import DONE
+from liftopt.commands.terminal import write
 from liftopt.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,8 +24,8 @@ CHANNELS = "finger1,finger2,finger3,finger4,thumb1,thumb2"  # four below the boa
 FASTEST = 4_000_000  # baud
 
 
-def add_record_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_record_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "record",
         help="record force sensors from an Arduino, live in the browser",
@@ -47,7 +49,7 @@ def add_record_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -
     parser.add_argument("--baud", type=int, default=9600, metavar="N", help="bits per second (default: %(default)s)")
     add_divider_arguments(parser)
     parser.add_argument("--no-browser", action="store_false", dest="browser", help="serve the page, open no browser")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=_record)
 
 
 def add_divider_arguments(parser: argparse.ArgumentParser) -> None:
@@ -106,6 +108,11 @@ def calibration_of(args: argparse.Namespace) -> Calibration | None:
         return None
     calibration = load_calibration(Path(args.calibration))
     return calibration.wired(divider_of(args, calibration.divider))
+
+
+def _record(args: argparse.Namespace) -> int:
+    record(args, progress=lambda line: write(line + "\n"))
+    return DONE
 
 
 def record(args: argparse.Namespace, progress: Callable[[str], None]) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from liftopt.commands.terminal import printing
 
-def add_scenario_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+
+def add_scenario_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "scenario",
         help="the scenario of a recorded lift, to predict it",
@@ -21,7 +22,7 @@ def add_scenario_parser(commands: Any, run: Callable[[argparse.Namespace], int])
     parser.add_argument("--object-mass", type=float, metavar="KG", required=True, help="of all that is lifted")
     parser.add_argument("--lift", type=int, metavar="N", help="which lift, from 1, where the recording has several")
     parser.add_argument("--out", metavar="FILE", required=True, help="TOML file to write; it must not exist")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=printing(scenario_text))
 
 
 def scenario_text(args: argparse.Namespace) -> str:

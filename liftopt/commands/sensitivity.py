@@ -6,8 +6,9 @@ import argparse
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from liftopt.commands.terminal import telling
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.scenario.model import Scenario
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
 
 
-def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], int]) -> None:
-    """Add the command to the subparsers ``commands``; ``run`` carries it out."""
+def add_sensitivity_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
     parser = commands.add_parser(
         "sensitivity",
         help="what effort, peak torques and load share depend on",
@@ -43,7 +44,7 @@ def add_sensitivity_parser(commands: Any, run: Callable[[argparse.Namespace], in
     )
     parser.add_argument("--json", action="store_true", help="print all slopes as one JSON object")
     parser.add_argument("--plot", metavar="FILE", help="write a figure: .svg, .png or .pdf")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=telling(sensitivity))
 
 
 def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
@@ -112,8 +113,8 @@ def _polished(scenario: Scenario, progress: Callable[[str], None] | None) -> tup
 def _write_plot(study: Study, path: Path) -> None:
     from matplotlib import rc_context
 
+    from liftopt.studies.sensitivity_plot import sensitivity_figure
     from liftopt.viz.plots import rendered
-    from liftopt.viz.plots_sensitivity import sensitivity_figure
     from liftopt.viz.plots_style import STYLE
 
     with rc_context(STYLE):
@@ -123,32 +124,71 @@ def _write_plot(study: Study, path: Path) -> None:
 
 def table(study: Study) -> str:
     """Return the table that the command prints."""
-    human, robot = study.candidate.problem.team.agents
-    now, busiest = study.figures, study.busiest
-    joints = [name.partition("_")[2] for name in busiest]
+    from liftopt.assessment.who import who_is
+    from liftopt.studies.sensitivity import bearers
+
+    agents = study.candidate.problem.team.agents
+    told = {agent.name: who_is(agent, agents) for agent in agents}
+    now, bearing = study.figures, bearers(study)
+    efforts = ", ".join(f"of {who.called} {now[f'effort {name}']:.4g}" for name, who in told.items())
+    first, *others = (f"{told[name].called} {100 * now[f'share {name}']:.1f} %" for name in bearing)
     lines = [
-        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort of the person "
-        f"{now[f'effort {human.name}']:.4g}, of the robot {now[f'effort {robot.name}']:.4g} N2 m2 s; the person bears",
-        f"{100 * now[f'share {human.name}']:.1f} %. Nearest to their limits: "
-        + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in busiest)
+        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} N2 m2 s; "
+        f"{told[bearing[0]].called} bears",
+        ", ".join([first.removeprefix(f"{told[bearing[0]].called} "), *others])
+        + ". Nearest to their limits: "
+        + " and ".join(f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest)
         + ".",
         "",
-        f"{'':17} {'':>12} {'':>7} {'effort':>15} {'':>6} {'torque used':>15}",
-        f"{'if this':17} {'':>12} {'J':>7} {'person':>7} {'robot':>7} {'load':>6} {joints[0]:>7} {joints[1]:>7} "
-        f"{'J':>7}",
-        f"{'changes':17} {'by':>12} {'%':>7} {'%':>7} {'%':>7} {'%':>6} {'%':>7} {'%':>7} {'%/+1%':>7}",
+    ]
+    columns = _columns(study)
+    name = max(17, *(len(s.parameter.name) for s in study.sensitivities), 0)
+    groups = {column.group: [one for one in columns if one.group == column.group] for column in columns}
+    head = [f"{group:>{sum(one.width for one in some) + len(some) - 1}}" for group, some in groups.items()]
+    lines += [
+        f"{'':{name}} {'':>12} {'':>7} " + " ".join(head),
+        f"{'if this':{name}} {'':>12} {'J':>7} " + " ".join(f"{c.label:>{c.width}}" for c in columns) + f" {'J':>7}",
+        f"{'changes':{name}} {'by':>12} {'%':>7} " + " ".join(f"{'%':>{c.width}}" for c in columns) + f" {'%/+1%':>7}",
     ]
     for s in sorted(study.sensitivities, key=lambda s: -abs(s.slopes["objective"] * s.change)):
-        relative = {name: 100 * s.slopes[name] / now[name] for name in now}
-        efforts = [s.change * relative[f"effort {agent.name}"] for agent in (human, robot)]
-        used = [100 * s.change * s.slopes[f"used {name}"] for name in busiest]
+        relative = 100 * s.slopes["objective"] / now["objective"]
+        cells = [f"{s.change * c.scale * s.slopes[c.figure]:+{c.width}.2f}" for c in columns]
         lines.append(
-            f"{s.parameter.name:17} {_change(s):>10}{'' if s.is_reliable else ' !':2} "
-            f"{s.change * relative['objective']:+7.2f} {efforts[0]:+7.2f} {efforts[1]:+7.2f} "
-            f"{100 * s.change * s.slopes[f'share {human.name}']:+6.2f} {used[0]:+7.2f} {used[1]:+7.2f} "
-            f"{relative['objective'] * s.value / 100:+7.2f}"
+            f"{s.parameter.name:{name}} {_change(s):>10}{'' if s.is_reliable else ' !':2} "
+            f"{s.change * relative:+7.2f} " + " ".join(cells) + f" {relative * s.value / 100:+7.2f}"
         )
     return "\n".join([*lines, *_remarks(study)]) + "\n"
+
+
+class _Column(NamedTuple):
+    """A column of the table: the figure, what takes its slope to percent, and its head."""
+
+    figure: str
+    scale: float
+    group: str
+    label: str
+    width: int
+
+
+def _columns(study: Study) -> list[_Column]:
+    """Return the columns of efforts, loads and torques: everybody's, by name where there are several of a kind."""
+    from liftopt.assessment.who import who_is
+    from liftopt.studies.sensitivity import bearers
+
+    agents, bearing = study.candidate.problem.team.agents, bearers(study)
+    labels = {agent.name: who_is(agent, agents).label for agent in agents}
+    columns = []
+    for name, label in labels.items():
+        figure = f"effort {name}"
+        columns.append(_Column(figure, 100 / study.figures[figure], "effort", label, max(7, len(label))))
+    for name in bearing:
+        group, label = ("", "load") if len(bearing) == 1 else ("load", labels[name])
+        columns.append(_Column(f"share {name}", 100.0, group, label, max(6, len(label))))
+    for agent, joint in zip(agents, study.busiest, strict=True):
+        short = joint.removeprefix(f"{agent.name}_")
+        label = short if len(agents) == 2 else f"{agent.name} {short}"
+        columns.append(_Column(f"used {joint}", 100.0, "torque used", label, max(7, len(label))))
+    return columns
 
 
 def _remarks(study: Study) -> list[str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from liftopt.assessment.text import details_text, verdict_text
+from liftopt.commands.terminal import captured
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.storage.writer import files_of
@@ -30,11 +31,6 @@ def solved_text(solution: Solution, folder: Path, *, as_json: bool, details: boo
 
 
 def _tables(summary: dict[str, Any]) -> str:
-    from rich.console import Console  # which every other solve does without
+    from liftopt.commands.summary_text import print_details  # it loads rich, which every other solve does without
 
-    from liftopt.commands.summary_text import print_details
-
-    console = Console()
-    with console.capture() as capture:
-        print_details(summary, console)
-    return "\n".join(line.rstrip() for line in capture.get().split("\n"))
+    return captured(lambda console: print_details(summary, console))

@@ -103,7 +103,7 @@ def _sparkline(values: npt.NDArray[np.float64], ascii_only: bool) -> str:
 
 def _forces(summary: dict[str, Any]) -> Table:
     table = _table("Forces", "<", "peak", "<", "at [s]", "<")
-    grasp, ground = summary["grasp_force"], summary["ground_reaction"]
+    grasp, grounds = summary["grasp_force"], _grounds(summary)
     for agent, peak in grasp["agents"].items():
         of_limit = (
             "" if peak["peak_N"] is None else f"{peak['peak_N'] / grasp['limit_N']:.0%} of {grasp['limit_N']:g} N"
@@ -115,15 +115,27 @@ def _forces(summary: dict[str, Any]) -> Table:
         _force_row(table, f"grasp moment, {agent}", peak, of_limit)
     if "squeeze" in grasp:
         _force_row(table, "squeeze between the grasps", grasp["squeeze"], "+ presses the object together")
-    of_weight = ground["vertical_over_body_weight"]
-    times = "" if of_weight is None else f"{of_weight:.2f} x body weight"
-    _force_row(table, "ground reaction, vertical", ground["vertical"], times)
-    _force_row(table, "ground reaction, horizontal", ground["horizontal"], "")
-    _force_row(table, "ground moment at the feet", ground["moment"], "")
-    _force_row(table, "  sagittal (about Y)", ground["moment_sagittal"], "")
-    _force_row(table, "  lateral (about X)", ground["moment_lateral"], "")
-    _force_row(table, "  twisting (about Z)", ground["moment_vertical"], "")
+    for name, ground in grounds.items():
+        of_weight = ground["vertical_over_body_weight"]
+        times = "" if of_weight is None else f"{of_weight:.2f} x body weight"
+        reaction, moment = ("ground", "moment at feet") if name else ("ground reaction", "ground moment at the feet")
+        _force_row(table, f"{name}{reaction}, vertical", ground["vertical"], times)
+        _force_row(table, f"{name}{reaction}, horizontal", ground["horizontal"], "")
+        _force_row(table, f"{name}{moment}", ground["moment"], "")
+        _force_row(table, "  sagittal (about Y)", ground["moment_sagittal"], "")
+        _force_row(table, "  lateral (about X)", ground["moment_lateral"], "")
+        _force_row(table, "  twisting (about Z)", ground["moment_vertical"], "")
     return table
+
+
+def _grounds(summary: dict[str, Any]) -> dict[str, Any]:
+    """Return what the ground does to each person, by what comes before its name in the table."""
+    end = "ground_reaction"
+    found = {key.removesuffix(end).rstrip("_"): one for key, one in summary.items() if key.endswith(end)}
+    if len(found) < 2:
+        return found
+    first = next(name for name, agent in summary["scenario"]["agents"].items() if agent["kind"] == "person")
+    return {f"{name or first}: ": one for name, one in found.items()}
 
 
 def _force_row(table: Table, label: str, peak: dict[str, Any], remark: str) -> None:

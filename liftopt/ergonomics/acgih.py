@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from liftopt.multibody.person.anthropometry import landmarks, link_lengths
+from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.sources import Source
-from liftopt.scenario.agents import Person
-from liftopt.scenario.build import subject_of
 
 SOURCE = Source(
     "ACGIH (2004), threshold limit values for lifting, Table 1 (at most 2 h a day and 60 lifts an hour), as reprinted "
@@ -23,9 +22,8 @@ DISTANCES = (30.0, 60.0, 80.0)  # ends of close, intermediate and extended [cm]
 BELOW_SHOULDER, ABOVE_SHOULDER = 8.0, 30.0  # cm; the table ends 30 cm above the shoulder
 
 
-def acgih_limit(person: Person, horizontal: float, vertical: float) -> float | None:
+def acgih_limit(subject: Subject, horizontal: float, vertical: float) -> float | None:
     """Return the limit [kg] for hands at H, V [cm], or None where the table knows no safe limit."""
-    subject = subject_of(person)
     lengths, at = link_lengths(subject), landmarks(subject)
     shoulder = 100.0 * (lengths.l1 + lengths.l2)
     knuckles = shoulder - 100.0 * (lengths.l4 + lengths.l5 + lengths.l6)

@@ -7,6 +7,7 @@ from typing import Literal
 
 from liftopt.ergonomics.acgih import SOURCE as ACGIH_SOURCE
 from liftopt.ergonomics.acgih import acgih_limit
+from liftopt.ergonomics.lift import Lift, subject_in
 from liftopt.ergonomics.niosh import COUPLING_MULTIPLIER, Niosh, niosh
 from liftopt.ergonomics.niosh import SOURCE as NIOSH_SOURCE
 from liftopt.ergonomics.posture import Posture, posture_of
@@ -14,7 +15,7 @@ from liftopt.ergonomics.rula import ACTION, Rula, rula
 from liftopt.ergonomics.rula_tables import SOURCE as RULA_SOURCE
 from liftopt.ergonomics.strength import StrengthUse, strength_use
 from liftopt.multibody.sources import Source
-from liftopt.solution.solution import Solution
+from liftopt.multibody.trajectory import AgentTrajectory
 
 Scope = Literal["applies", "indicative", "out of scope"]
 
@@ -55,11 +56,11 @@ class Measure:
 
 @dataclass(frozen=True)
 class Ergonomics:
-    """The ergonomics of a lift.
+    """The ergonomics of a person in a lift.
 
     Attributes:
         strength: use of strength by joint.
-        posture: of the person over time.
+        posture: over time.
         rula: its scores.
         niosh: the lifting equation.
         measures: all of them in words.
@@ -72,17 +73,17 @@ class Ergonomics:
     measures: tuple[Measure, ...]
 
 
-def ergonomics_of(solution: Solution) -> Ergonomics:
-    """Return the ergonomic measures of ``solution`` at its times; a finer grid sees what lies between the knots."""
-    strength, posture, equation = strength_use(solution), posture_of(solution), niosh(solution)
+def ergonomics_of(lift: Lift, person: AgentTrajectory) -> Ergonomics:
+    """Return the ergonomic measures of a person in a lift at its times; a finer grid sees what is between the knots."""
+    strength, posture, equation = strength_use(lift, person), posture_of(lift, person), niosh(lift, person)
     scores = rula(posture)
-    measures = (_rula(scores, solution), _niosh(equation), _iso(solution), _acgih(solution, equation))
+    measures = (_rula(scores, lift), _niosh(equation), _iso(lift), _acgih(lift, person, equation))
     return Ergonomics(strength, posture, scores, equation, measures)
 
 
-def _rula(scores: Rula, solution: Solution) -> Measure:
+def _rula(scores: Rula, lift: Lift) -> Measure:
     worst = int(scores.grand.max())
-    best, at = int(scores.grand.min()), float(solution.time[scores.worst])
+    best, at = int(scores.grand.min()), float(lift.time[scores.worst])
     span = f"{worst}" if best == worst else f"{best} to {worst}"
     part = 100.0 * float((scores.grand == worst).mean())
     return Measure(
@@ -119,23 +120,22 @@ def _niosh(equation: Niosh) -> Measure:
     )
 
 
-def _iso(solution: Solution) -> Measure:
-    mass, name = solution.scenario.object.mass, solution.object.name
+def _iso(lift: Lift) -> Measure:
+    mass, name = lift.scenario.object.mass, lift.object.name
     if mass < ISO_SMALLEST:
         reading = f"The standard starts at {ISO_SMALLEST:g} kg; the {name} has {mass:g} kg."
         return Measure("iso_11228_1", "ISO 11228-1", "out of scope", "not evaluated", reading, ISO_11228_1)
+    shared = "shared with a robot" if lift.robots else "shared like this one"
     reading = (
-        f"The {name}'s {mass:g} kg are in its range, but it does not treat a lift that is shared with a robot, and its "
+        f"The {name}'s {mass:g} kg are in its range, but it does not treat a lift that is {shared}, and its "
         "reference masses and factors could not be checked at their source: evaluate it with the standard at hand."
     )
     return Measure("iso_11228_1", "ISO 11228-1", "indicative", "not evaluated", reading, ISO_11228_1)
 
 
-def _acgih(solution: Solution, equation: Niosh) -> Measure:
-    ends = [
-        acgih_limit(solution.scenario.first("person"), end.horizontal, end.vertical)
-        for end in (equation.origin, equation.destination)
-    ]
+def _acgih(lift: Lift, person: AgentTrajectory, equation: Niosh) -> Measure:
+    subject = subject_in(lift, person.name)
+    ends = [acgih_limit(subject, end.horizontal, end.vertical) for end in (equation.origin, equation.destination)]
     found = [limit for limit in ends if limit is not None]
     words = " and ".join("none known to be safe" if limit is None else f"{limit:g} kg" for limit in ends)
     used = f"{100 * equation.largest_load / min(found):.0f} % of it used" if len(found) == 2 else "no limit at one end"

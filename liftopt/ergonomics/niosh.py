@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from liftopt.ergonomics.lift import Array, Lift, R_world_person, p_world_feet
 from liftopt.multibody.sources import Source
-from liftopt.solution.solution import Solution
-from liftopt.solution.summary import GRAVITY
+from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 
 SOURCE = Source(
     "Waters, Putz-Anderson, Garg & Fine (1993), Ergonomics 36:749-776; Applications Manual for the Revised NIOSH "
@@ -84,18 +84,16 @@ class Niosh:
         return (*why, fast) if self.hand_speed > FASTEST else why
 
 
-def niosh(solution: Solution) -> Niosh:
-    """Return the equation for the person's part of the lift."""
-    human = solution.agents[0]
-    load = human.grasp_force[:, 2] / GRAVITY
-    ends = human.grasp_position[[0, -1]]
+def niosh(lift: Lift, person: AgentTrajectory) -> Niosh:
+    """Return the equation for a person's part of the lift."""
+    load, ends = person.grasp_force[:, 2] / GRAVITY, person.grasp_position[[0, -1]]
     travel = abs(float(ends[1, 2] - ends[0, 2])) * 100.0
-    speed = np.linalg.norm(np.gradient(human.grasp_position, solution.time, axis=0), axis=1)
-    mean = float(np.trapezoid(load, solution.time) / (solution.time[-1] - solution.time[0]))
+    speed = np.linalg.norm(np.gradient(person.grasp_position, lift.time, axis=0), axis=1)
+    mean = float(np.trapezoid(load, lift.time) / (lift.time[-1] - lift.time[0]))
     k = int(np.argmax(load))
-    return Niosh(
-        mean, float(load[k]), float(solution.time[k]), _at(ends[0], travel), _at(ends[1], travel), float(speed.max())
-    )
+    hands = (ends - p_world_feet(lift, person.name)) @ R_world_person(lift, person.name)
+    origin, destination = (_at(hand, travel) for hand in hands)
+    return Niosh(mean, float(load[k]), float(lift.time[k]), origin, destination, float(speed.max()))
 
 
 def niosh_terms(horizontal: float, vertical: float, travel: float, asymmetry: float) -> NioshTerms:
@@ -112,11 +110,12 @@ def niosh_terms(horizontal: float, vertical: float, travel: float, asymmetry: fl
     )
 
 
-def _at(hand: np.ndarray[tuple[int], np.dtype[np.float64]], travel: float) -> NioshTerms:
-    """Return the equation for a hand at (x, y, z) [m], the ankles on the world's z axis."""
+def _at(hand: Array, travel: float) -> NioshTerms:
+    """Return the equation for a hand (3,) from between the ankles: ahead, to the left, up [m]."""
+    x, y, z = hand
     return niosh_terms(
-        horizontal=100.0 * float(np.hypot(hand[0], hand[1])),
-        vertical=100.0 * float(hand[2]),
+        horizontal=100.0 * float(np.hypot(x, y)),
+        vertical=100.0 * float(z),
         travel=travel,
-        asymmetry=abs(float(np.degrees(np.arctan2(hand[1], hand[0])))),
+        asymmetry=abs(float(np.degrees(np.arctan2(y, x)))),
     )

@@ -1,4 +1,4 @@
-"""The person's posture over time as an observer with a goniometer would note it."""
+"""A person's posture over time as an observer with a goniometer would note it."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from liftopt.ergonomics.lift import Lift, R_world_person, model_of
 from liftopt.multibody.agent import Agent
-from liftopt.scenario.build import agents_of
-from liftopt.solution.solution import Solution
-from liftopt.solution.summary import GRAVITY
+from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 
 Array = npt.NDArray[np.float64]
-TRUNK, SHOULDER, ELBOW, WRIST = "human_Q3_link", "human_Q4_link", "human_Q7_link", "human_Q9_link"
+TRUNK, SHOULDER, ELBOW, WRIST = "Q3", "Q4", "Q7", "Q9"  # joints of Table 2 whose links begin there
 
 
 @dataclass(frozen=True)
@@ -48,41 +47,47 @@ class Posture:
     hand_load: Array
 
 
-def posture_of(solution: Solution) -> Posture:
-    """Return the posture of the person at every time of ``solution``."""
-    agent, human = agents_of(solution.scenario, solution.urdfs)[0], solution.agents[0]
-    q = {name: np.degrees(human.q[:, i]) for i, name in enumerate(human.joint_names)}
-    shoulder, elbow, wrist = _in_trunk(agent, human.q)
+def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
+    """Return the posture of a person at every time of a lift."""
+    agent = model_of(lift, person.name)
+    q = {name.removeprefix(f"{person.name}_"): np.degrees(person.q[:, i]) for i, name in enumerate(person.joint_names)}
+    shoulder, elbow, wrist = _in_trunk(agent, R_world_person(lift, person.name), person.q)
     arm = (elbow - shoulder) / np.linalg.norm(elbow - shoulder, axis=1, keepdims=True)
     limits, names = agent.limits, agent.moving_joints
-    middle = np.degrees((limits.q_lower + limits.q_upper) / 2)[names.index("human_Q8")]
+    middle = np.degrees((limits.q_lower + limits.q_upper) / 2)[names.index(f"{person.name}_Q8")]
     return Posture(
-        trunk_flexion=q["human_Q2"],
-        trunk_bend=q["human_Q1"],
-        trunk_turn=q["human_Q3"],
+        trunk_flexion=q["Q2"],
+        trunk_bend=q["Q1"],
+        trunk_turn=q["Q3"],
         upper_arm_flexion=np.degrees(np.arctan2(arm[:, 0], -arm[:, 2])),
         upper_arm_out=np.degrees(np.arcsin(np.clip(-arm[:, 1], -1.0, 1.0))),
-        elbow_flexion=-q["human_Q7"],
+        elbow_flexion=-q["Q7"],
         wrist_left=wrist[:, 1],
         wrist_outside=shoulder[:, 1] - wrist[:, 1],
-        pronation=middle - q["human_Q8"],
-        wrist_flexion=-q["human_Q9"],
-        wrist_deviation=q["human_Q10"],
-        hand_load=np.linalg.norm(human.grasp_force, axis=1) / GRAVITY,
+        pronation=middle - q["Q8"],
+        wrist_flexion=-q["Q9"],
+        wrist_deviation=q["Q10"],
+        hand_load=np.linalg.norm(person.grasp_force, axis=1) / GRAVITY,
     )
 
 
-def _in_trunk(agent: Agent, q: Array) -> tuple[Array, Array, Array]:
-    """Return shoulder, elbow and wrist (K, 3) from the base of the spine; axes of the trunk: forward, left, up."""
+def _in_trunk(agent: Agent, upright: Array, q: Array) -> tuple[Array, Array, Array]:
+    """Return shoulder, elbow and wrist (K, 3) from the base of the spine; axes of the trunk: forward, left, up.
+
+    Args:
+        agent: the person's model.
+        upright: (3, 3) those axes in the world where the person stands upright.
+        q: (K, n) its joints.
+    """
     model = agent.model
     data = model.createData()
-    trunk, *points = (model.getFrameId(name) for name in (TRUNK, SHOULDER, ELBOW, WRIST))
+    trunk, *points = (model.getFrameId(f"{agent.name}_{joint}_link") for joint in (TRUNK, SHOULDER, ELBOW, WRIST))
     pin.framesForwardKinematics(model, data, pin.neutral(model))
-    upright = data.oMf[trunk].rotation.copy()  # upright, the trunk's axes are those of the world
+    R_link_trunk = data.oMf[trunk].rotation.T @ upright
     placed = np.zeros((len(points), len(q), 3))
     for k, posture in enumerate(q):
         pin.framesForwardKinematics(model, data, posture)
-        rotation = data.oMf[trunk].rotation @ upright.T
+        rotation = data.oMf[trunk].rotation @ R_link_trunk
         for i, point in enumerate(points):
             placed[i, k] = rotation.T @ (data.oMf[point].translation - data.oMf[trunk].translation)
     return placed[0], placed[1], placed[2]

@@ -1,4 +1,4 @@
-"""How much of the person's strength each joint uses over the lift."""
+"""How much of a person's strength each joint uses over the lift."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.solution.solution import Solution
-from liftopt.solution.summary import limit_share
+from liftopt.ergonomics.lift import Lift
+from liftopt.multibody.trajectory import AgentTrajectory, limit_share
 
 Array = npt.NDArray[np.float64]
 
@@ -32,13 +32,11 @@ class StrengthUse:
     mean: float
 
 
-def strength_use(solution: Solution) -> tuple[StrengthUse, ...]:
-    """Return the use of strength of the person's joints, in the order of Table 2."""
-    human = solution.agents[0]
-    names = np.array(human.joint_names)[human.moving]
+def strength_use(lift: Lift, person: AgentTrajectory) -> tuple[StrengthUse, ...]:
+    """Return the use of strength of a person's joints, in the order of Table 2."""
     return tuple(
-        _use(str(name).removeprefix("human_"), share, solution.time)
-        for name, share in zip(names, limit_share(human).T, strict=True)
+        _use(name.removeprefix(f"{person.name}_"), share, lift.time)
+        for name, share in zip(person.moving_joints, limit_share(person).T, strict=True)
     )
 
 

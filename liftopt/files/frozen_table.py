@@ -50,9 +50,11 @@ class FrozenTable(Mapping[str, T]):
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Return how pydantic checks it: as a dictionary of its values."""
-        values = handler.generate_schema(dict[str, get_args(source)[0]])  # type: ignore[misc]
+        values = handler.generate_schema(dict[str, (get_args(source) or (Any,))[0]])  # type: ignore[misc]
         given = core_schema.no_info_before_validator_function(_as_dict, values)
-        return core_schema.no_info_after_validator_function(cls, given)
+        return core_schema.no_info_after_validator_function(
+            cls, given, serialization=core_schema.plain_serializer_function_ser_schema(dict)
+        )
 
 
 def _as_dict(values: object) -> object:

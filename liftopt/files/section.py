@@ -100,9 +100,8 @@ def refusal_at(of: type[BaseModel], place: Place, kind: str, value: object, pref
         known = list(keys_of(inside)) if inside else []
         offer = did_you_mean(nearest(keys[-1], known)) or "; known here: " + ", ".join(known)
         return InputError(key, value, "unknown key" + offer)
-    field = field_at(of, keys)
-    if field is None:
-        return InputError(key, value, "is not allowed")
+    # Below a table of the user's names the field that holds it is all there is to tell.
+    field = next(filter(None, (field_at(of, keys[:depth]) for depth in range(len(keys), 0, -1))))
     if kind == "missing":
         return InputError(key, NO_VALUE, f"is missing; must be {allowed(field)} ({about(field)})")
     return InputError(key, value, f"must be {allowed(field)} ({about(field)}){meant_by(field, value)}")

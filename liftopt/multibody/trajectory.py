@@ -15,6 +15,7 @@ import pinocchio as pin
 from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject
 
 Array = npt.NDArray[np.float64]
+GRAVITY = 9.81  # m/s^2, as in the models
 
 
 @dataclass(frozen=True)
@@ -130,6 +131,12 @@ def agent_trajectory(
         grip @ frame.placement.rotation @ agent.grasp.R_hand_object,
         root[:, :3] + force, ground_moment, agent.limits, agent.grasp,
     )  # fmt: skip
+
+
+def limit_share(agent: AgentTrajectory) -> Array:
+    """Return the torques (K, moving joints) of an agent as fractions of the limits in their directions."""
+    tau = agent.tau[:, agent.moving]
+    return np.where(tau >= 0.0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
 
 
 def bearing(model: pin.Model, carrier: int) -> Array:

@@ -44,7 +44,12 @@ class Person(Section):
     ] = None
     heading_deg: Annotated[
         float | None,
-        number("which way the person faces, from X about Z; by default X, or the first person", "deg", -360.0, 360.0),
+        number(
+            "which way the person faces, from X about Z; by default 0, or 180 for all but the first",
+            "deg",
+            -360.0,
+            360.0,
+        ),
     ] = None
     grasp: Annotated[GRASPS, entry("a force at a point, or a hand that also transmits moments")] = "point"
     # Both largest moments are estimates: about what a wrist holds in the weaker directions, and a small gripper.

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import FREE
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.agents import NAME, NAMES
+from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lead, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.scenario.urdf_files import urdf_files
-
-if TYPE_CHECKING:
-    from liftopt.scenario.model import Scenario
 
 # What results call otherwise: attributes objective_<agent>, and the sections beside the agents.
 OWN_PLACE = "give the object's own x, y and z"
 TAKEN = ("acceleration", "force", "limit", "error", "bar", "schema", "table")
 
 
-def check(scenario: Scenario) -> None:
+def check(scenario: ScenarioFields) -> None:
     """Raise ``InputError`` where two entries of a scenario contradict each other, or one is missing for another."""
     if not scenario.agents:
         raise InputError("agents", NO_VALUE, "is empty; must hold a table [agents.NAME] for everybody who lifts")
@@ -34,7 +31,7 @@ def check(scenario: Scenario) -> None:
         _check_place(scenario, end)
 
 
-def _check_names(scenario: Scenario) -> None:
+def _check_names(scenario: ScenarioFields) -> None:
     taken = {*TAKEN, *type(scenario).model_fields, scenario.object.name}
     for name in scenario.agents:
         if not NAME.fullmatch(name):
@@ -47,7 +44,7 @@ def _check_names(scenario: Scenario) -> None:
             raise InputError("agents", name, f"has the file {file}, as another agent; give it another name")
 
 
-def _check_grasps(scenario: Scenario) -> None:
+def _check_grasps(scenario: ScenarioFields) -> None:
     for name in scenario.object.grasps:
         if name not in scenario.agents:
             offer = did_you_mean(nearest(name, scenario.agents)) or f"; there are {', '.join(scenario.agents)}"
@@ -55,7 +52,7 @@ def _check_grasps(scenario: Scenario) -> None:
     grasp_points(scenario)
 
 
-def _check_weights(scenario: Scenario) -> None:
+def _check_weights(scenario: ScenarioFields) -> None:
     weights = {f"{name}.weight": agent.weight for name, agent in scenario.agents.items()}
     objective = scenario.objective
     weights |= {
@@ -66,7 +63,7 @@ def _check_weights(scenario: Scenario) -> None:
         raise InputError("objective", weights, "at least one weight must be above 0")
 
 
-def _check_place(scenario: Scenario, end: str) -> None:
+def _check_place(scenario: ScenarioFields, end: str) -> None:
     place: GraspPlace | ObjectPlace = getattr(scenario.task, end)
     most = scenario.limits.table_pitch_deg
     if abs(place.pitch_deg) > most:
@@ -76,7 +73,7 @@ def _check_place(scenario: Scenario, end: str) -> None:
         _check_distance(scenario, f"task.{end}.human_distance", place.human_distance)
 
 
-def _check_distance(scenario: Scenario, key: str, distance: float | None) -> None:
+def _check_distance(scenario: ScenarioFields, key: str, distance: float | None) -> None:
     task, first = scenario.task, lead(scenario)
     if distance is not None and (scenario.agents[first].kind != "person" or stand_of(scenario, first).yaw_deg % 360.0):
         raise InputError(key, distance, f"counts from the feet of a person who faces along X, not {first}; {OWN_PLACE}")

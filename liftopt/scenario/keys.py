@@ -7,7 +7,7 @@ stand for ``object.*``.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from liftopt.errors import NO_VALUE, InputError
@@ -85,6 +85,15 @@ def value_at(scenario: Any, path: Sequence[str]) -> Any:
             raise InputError(shown(path), NO_VALUE, "is no entry of the scenario")
         value = value[part] if isinstance(value, Mapping) else getattr(value, part)
     return value
+
+
+def leaves(tables: Mapping[str, Any], path: Path = ()) -> Iterator[tuple[str, Any]]:
+    """Yield every value of a scenario's tables with its dotted key, an agent's by its name."""
+    for name, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from leaves(value, (*path, name))
+        else:
+            yield shown((*path, name)), value
 
 
 def shown(path: Sequence[str]) -> str:

@@ -5,75 +5,40 @@ SI units; radians unless the key says otherwise. The world frame has Z up and X 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any, Literal, overload
+from typing import Any
 
 import tomli_w
-from pydantic import AfterValidator, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.files.entries import entry, number
-from liftopt.files.section import Section, first_fault, refusal_at
-from liftopt.scenario.agents import Agent, Agents, Kind, Person, Robot
-from liftopt.scenario.box import Box
+from liftopt.files.section import first_fault, refusal_at
 from liftopt.scenario.checks import check
+from liftopt.scenario.fields import ScenarioFields, safe_name
 from liftopt.scenario.file import read_tables
-from liftopt.scenario.keys import AGENTS, Changes, changes_in, path_of, set_entry, value_at
+from liftopt.scenario.keys import Changes, changes_in, leaves, path_of, set_entry, value_at
 from liftopt.scenario.listing import describe
 from liftopt.scenario.refusals import refusal
 from liftopt.scenario.schema1 import as_schema_2
-from liftopt.scenario.settings import Limits, Objective, Refine, Solver
-from liftopt.scenario.task import Lift
 
 SCHEMA = 2
-NAMES = "1 to 64 letters, digits, spaces or _ . + -, a letter or a digit first"
+REQUIRED = ("schema", "duration", "agents", "object", "task")  # in a file
+VERSION = "must be 2 (version of the scenario format)"
 
 
-def _safe(name: str) -> str:
-    if not re.fullmatch(r"[^\W_](?:[\w .+-]{0,62}[\w+-])?", name):
-        raise InputError("name", name, f"must be {NAMES} (name of the scenario)")
-    return name
-
-
-class Scenario(Section):
+class Scenario(ScenarioFields):
     """One lift to be solved. An invalid one cannot be made: every value is checked on construction.
 
     Raises:
         InputError: a value has the wrong type or is out of its range, or two values contradict each other.
     """
 
-    name: Annotated[str, AfterValidator(_safe), entry("name of the scenario", NAMES)] = "scenario"
-    duration: Annotated[float, number("time from start to end", "s", 0.2, 30.0)] = 2.0
-    agents: Annotated[Agents, entry("who lifts", "a section with a table [agents.NAME] for everybody who lifts")]
-    object: Box
-    task: Lift
-    objective: Objective = Objective()
-    limits: Limits = Limits()
-    solver: Solver = Solver()
-    refine: Refine = Refine()
-
     @model_validator(mode="after")
     def _agrees(self) -> Scenario:
         check(self)
         return self
-
-    @overload
-    def first(self, kind: Literal["person"]) -> Person: ...
-    @overload
-    def first(self, kind: Literal["robot"]) -> Robot: ...
-    def first(self, kind: Kind) -> Agent:
-        """Return the first agent of a kind.
-
-        Raises:
-            InputError: there is none.
-        """
-        for agent in self.agents.values():
-            if agent.kind == kind:
-                return agent
-        raise InputError(AGENTS, NO_VALUE, f"hold no {kind}")
 
     def describe(self) -> Iterator[tuple[str, str]]:
         """Yield every dotted key and what it holds: meaning, range and default."""
@@ -87,6 +52,10 @@ class Scenario(Section):
             InputError: the scenario has no such key.
         """
         return value_at(self, path_of(key, self.agents, self.object.name))
+
+    def entries(self) -> dict[str, Any]:
+        """Return every value as a file has it by its dotted key, all defaults filled in."""
+        return dict(leaves(self.to_dict()))
 
     def replace(self, changes: Mapping[str, Any]) -> Scenario:
         """Return the scenario with some entries changed; this one stays as it is.
@@ -131,7 +100,7 @@ def load_scenario(source: str | Path | None = None, changes: Changes = ()) -> Sc
     path, tables = read_tables("table5" if source is None else source)
     tables = _schema_2(tables)
     with suppress(InputError):  # a file name need not be a name
-        tables.setdefault("name", _safe(path.stem))
+        tables.setdefault("name", safe_name(path.stem))
     for key, value in changes_in(changes):
         set_entry(tables, key, value)
     return _scenario(tables)
@@ -156,14 +125,10 @@ def _schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _scenario(tables: Mapping[str, Any]) -> Scenario:
-    for key in ("schema", "duration"):
-        if key not in tables:
-            what = {"schema": "must be 2 (version of the scenario format)"}.get(key) or _required(key)
-            raise InputError(key, NO_VALUE, f"is missing; {what}")
+    if "schema" not in tables:
+        raise InputError("schema", NO_VALUE, f"is missing; {VERSION}")
     if tables["schema"] != SCHEMA:  # by a change
-        raise InputError("schema", tables["schema"], "must be 2 (version of the scenario format)")
+        raise InputError("schema", tables["schema"], VERSION)
+    if "duration" not in tables:  # in Python it has a default
+        raise refusal_at(Scenario, ("duration",), "missing", None)
     return Scenario(**{key: value for key, value in tables.items() if key != "schema"})
-
-
-def _required(key: str) -> str:
-    return str(refusal_at(Scenario, (key,), "missing", None)).partition("; ")[2]

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.edges import Point, edge_grasps
 from liftopt.scenario.agents import Person
+from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.task import GraspPlace, ObjectPlace
-
-if TYPE_CHECKING:
-    from liftopt.scenario.model import Scenario
 
 DISTANCE = "task.standing_distance"
 
@@ -24,20 +22,20 @@ class Stand(NamedTuple):
     yaw_deg: float
 
 
-def lead(scenario: Scenario) -> str:
+def lead(scenario: ScenarioFields) -> str:
     """Return the name of the first person, from whose feet distances count; of the first agent if there is none."""
     agents = scenario.agents
     return next((name for name, agent in agents.items() if isinstance(agent, Person)), next(iter(agents)))
 
 
-def partner(scenario: Scenario) -> str | None:
+def partner(scenario: ScenarioFields) -> str | None:
     """Return the name of who stands opposite the lead: the first robot, or the second agent; None if there is none."""
     others = [name for name in scenario.agents if name != lead(scenario)]
     robots = [name for name in others if scenario.agents[name].kind == "robot"]
     return next(iter([*robots, *others]), None)
 
 
-def stand_of(scenario: Scenario, name: str) -> Stand:
+def stand_of(scenario: ScenarioFields, name: str) -> Stand:
     """Return where an agent stands.
 
     Raises:
@@ -54,7 +52,7 @@ def stand_of(scenario: Scenario, name: str) -> Stand:
     return Stand(x, base.y, base.yaw_deg)
 
 
-def distance_key(scenario: Scenario) -> str | None:
+def distance_key(scenario: ScenarioFields) -> str | None:
     """Return the key that says how far off the partner stands; None where no one number does."""
     name = partner(scenario)
     if name is None:
@@ -65,19 +63,19 @@ def distance_key(scenario: Scenario) -> str | None:
     return DISTANCE if agent.base.x is None else f"{name}.base.x"
 
 
-def edge_heights(scenario: Scenario) -> tuple[float, float]:
+def edge_heights(scenario: ScenarioFields) -> tuple[float, float]:
     """Return how high the middle of the object's underside is at the start and at the end [m]."""
     start, end = (_edge_height(scenario, place) for place in (scenario.task.start, scenario.task.end))
     return start, end
 
 
-def _edge_height(scenario: Scenario, place: GraspPlace | ObjectPlace) -> float:
+def _edge_height(scenario: ScenarioFields, place: GraspPlace | ObjectPlace) -> float:
     if isinstance(place, GraspPlace):
         return place.height
     return place.z - scenario.object.height / 2 * math.cos(math.radians(place.pitch_deg))
 
 
-def grasp_points(scenario: Scenario) -> dict[str, Point]:
+def grasp_points(scenario: ScenarioFields) -> dict[str, Point]:
     """Return where each agent holds the object, in the object's axes from its centre [m], in the agents' order.
 
     Raises:
@@ -97,7 +95,7 @@ def grasp_points(scenario: Scenario) -> dict[str, Point]:
 
 
 def _default(
-    scenario: Scenario, name: str, known: dict[str, tuple[float, float]], opposite: tuple[float, float], key: str
+    scenario: ScenarioFields, name: str, known: dict[str, tuple[float, float]], opposite: tuple[float, float], key: str
 ) -> tuple[float, float]:
     """Return where one stands who does not say it."""
     places = {partner(scenario): opposite} | known

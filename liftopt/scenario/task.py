@@ -52,8 +52,6 @@ class Lift(Section):
     """From where to where, how far apart the two stand, and what is zero at both ends."""
 
     standing_distance: Annotated[float, number("first person's feet to the robot's base", "m", 0.5, 4.0)]
-    rest: Annotated[RESTS, entry("zero at both ends: velocity, or acceleration too as in files without it")] = (
-        "velocity"
-    )
+    rest: Annotated[RESTS, entry("zero at both ends: the velocity, or the acceleration too")] = "velocity"
     start: Annotated[Place, entry("where the object is at first", PLACED)]
     end: Annotated[Place, entry("where the object is at last", PLACED)]

@@ -21,7 +21,7 @@ class Finding:
 
     Attributes:
         code: what kind it is, ``"person.posture"``: what it is about, then what was found. ``"verdict.person"``,
-            ``"verdict.robot"`` and ``"verdict.mathematics"`` are in every assessment.
+            ``"verdict.robot"`` and ``"verdict.mathematics"`` lead every assessment, one for everybody who lifts.
         severity: ``"error"`` (the numbers are no prediction), ``"warning"`` (a limit or a guide's value is
             exceeded, or no strength or torque is left: change something), ``"caution"`` (near a limit, or at one that
             shapes the result) or ``"info"``.
@@ -104,19 +104,31 @@ class Assessment(Sequence[Finding]):
 
     @property
     def verdicts(self) -> tuple[Finding, ...]:
-        """The three verdicts, the gravest first."""
+        """The verdicts on the mathematics and on everybody who lifts, the gravest first."""
         return tuple(finding for finding in self.findings if finding.code.startswith(f"{VERDICT}."))
 
-    def verdict(self, subject: str) -> Finding:
-        """Return the verdict on ``"person"``, ``"robot"`` or ``"mathematics"``; raises KeyError if there is none."""
+    def verdict(self, subject: str, agent: str | None = None) -> Finding:
+        """Return the verdict on ``"person"``, ``"robot"`` or ``"mathematics"``.
+
+        Args:
+            subject: what it is about.
+            agent: name of one of several of the kind; None takes the gravest verdict.
+
+        Raises:
+            KeyError: there is none.
+        """
         for finding in self.verdicts:
-            if finding.subject == subject:
+            if finding.subject == subject and agent in (None, finding.agent):
                 return finding
         raise KeyError(subject)
 
-    def about(self, subject: str) -> tuple[Finding, ...]:
-        """Return what was found on a subject, its verdict left out."""
-        return tuple(finding for finding in self.findings if finding.code.startswith(f"{subject}."))
+    def about(self, subject: str, agent: str | None = None) -> tuple[Finding, ...]:
+        """Return what was found on a subject, or on one agent of the kind, the verdict left out."""
+        return tuple(
+            finding
+            for finding in self.findings
+            if finding.code.startswith(f"{subject}.") and agent in (None, finding.agent)
+        )
 
     def plain(self) -> list[dict[str, Any]]:
         """Return the findings ready for JSON."""

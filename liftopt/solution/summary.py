@@ -15,7 +15,10 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.multibody.joint_meanings import joint_meanings
+from liftopt.multibody.trajectory import GRAVITY, limit_share
 from liftopt.scenario.agents import Person
+from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
 
 if TYPE_CHECKING:
@@ -24,32 +27,7 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
-GRAVITY = 9.81  # m/s^2, as in the models
-FREE_FALL = 1e-3  # N; below this the vertical load is too small to be shared out
 
-# The motion named is the positive direction of the joint, except where (-) says otherwise; right arm.
-HUMAN_JOINTS = {
-    "Q1": "trunk bend right",
-    "Q2": "trunk flexion",
-    "Q3": "trunk turn left",
-    "Q4": "shoulder adduction",
-    "Q5": "shoulder flexion",
-    "Q6": "shoulder int. rotation",
-    "Q7": "elbow flexion (-)",
-    "Q8": "forearm supination",
-    "Q9": "wrist extension",
-    "Q10": "wrist ulnar deviation",
-}
-# The manufacturer's joint names; the sign is that of its angle where Table 3's is Q.
-SAWYER_JOINTS = {
-    "Q1": "right_j0",
-    "Q2": "right_j1",
-    "Q3": "right_j2",
-    "Q4": "-right_j3",
-    "Q5": "right_j4",
-    "Q6": "right_j5",
-    "Q7": "right_j6",
-}
 AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective
 TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
 
@@ -117,43 +95,11 @@ def load_share(solution: Solution) -> dict[str, Any]:
     }
 
 
-def shares(agents: Sequence[AgentTrajectory]) -> Array:
-    """Return each agent's part (agents, K) of the vertical grasp force; NaN where there is no load to share."""
-    vertical = np.stack([agent.grasp_force[:, 2] for agent in agents])
-    load = vertical.sum(axis=0)
-    part = np.full_like(vertical, np.nan)
-    np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
-    return part
-
-
-def limit_share(agent: AgentTrajectory) -> Array:
-    """Return the torques (K, moving joints) of an agent as fractions of the limits in their directions."""
-    tau = agent.tau[:, agent.moving]
-    return np.where(tau >= 0.0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
-
-
-def squeeze(agents: Sequence[AgentTrajectory]) -> Array:
-    """Return the part (K,) of the forces of two agents along the line of their hands that cancels [N].
-
-    Positive presses the object together.
-    """
-    first, second = agents
-    line = second.grasp_position - first.grasp_position
-    line = line / np.linalg.norm(line, axis=1, keepdims=True)
-    return np.asarray(0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line))
-
-
-def joint_meaning(kind: str, robot_model: str, joint: str) -> str:
-    """Return what a joint is to its user: anatomy for a person, the manufacturer's name for a robot."""
-    if kind == "person":
-        return HUMAN_JOINTS.get(joint, "")
-    return SAWYER_JOINTS.get(joint, "") if robot_model == "sawyer" else ""
-
-
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
     share, who = limit_share(agent), solution.scenario.agents[agent.name]
+    meanings = joint_meanings(agent.kind, getattr(who, "model", ""))
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
@@ -162,7 +108,7 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
         rows.append(
             {
                 "joint": joint,
-                "meaning": joint_meaning(agent.kind, getattr(who, "model", ""), joint),
+                "meaning": meanings.get(joint, ""),
                 "peak_torque_Nm": _number(tau[at, column]),
                 "peak_torque_at_s": _number(solution.time[at]),
                 "share_of_limit": _number(share[at, column]),
@@ -179,7 +125,7 @@ def _grasp_force(solution: Solution) -> dict[str, Any]:
     result: dict[str, Any] = {"limit_N": solution.scenario.limits.max_grasp_force, "agents": {}}
     for agent in solution.agents:
         result["agents"][agent.name] = _peak(np.linalg.norm(agent.grasp_force, axis=1), solution.time, "N")
-    if len(solution.agents) == 2:
+    if len(solution.agents) > 1:
         result["squeeze"] = _peak(squeeze(solution.agents), solution.time, "N")
     return result
 

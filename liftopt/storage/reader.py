@@ -134,7 +134,9 @@ def _solution(
     )
     if "assessment" not in attributes:  # as files from before there was one
         return assessed(solution)
-    return replace(solution, assessment=read_assessment(str(attributes["assessment"])))
+    return replace(
+        solution, assessment=read_assessment(str(attributes["assessment"]), [agent.kind for agent in agents])
+    )
 
 
 def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, asdict, dataclass, fields
 from typing import Any, TypeVar, get_args, get_type_hints
 
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Check
-from liftopt.solution.finding import SUBJECTS, Assessment, Finding
+from liftopt.solution.finding import MATHEMATICS, Assessment, Finding
 from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 from liftopt.solution.solution import Solution, StartRecord
 
@@ -92,15 +92,15 @@ def read_record(text: str, agents: Sequence[str]) -> Record:
     return found
 
 
-def read_assessment(text: str) -> Assessment:
-    """Return the assessment of a JSON text.
+def read_assessment(text: str, kinds: Iterable[str]) -> Assessment:
+    """Return the assessment of a JSON text on a lift of agents of some kinds.
 
     Raises:
         ValueError, KeyError: it is no JSON, an entry is missing or of another type, or there is no verdict.
         RecursionError: it is nested too deep.
     """
     assessment = Assessment(_entries(Finding, json.loads(text)))
-    for subject in SUBJECTS:
+    for subject in (MATHEMATICS, *kinds):
         assessment.verdict(subject)
     return assessment
 

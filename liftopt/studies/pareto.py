@@ -1,6 +1,7 @@
-"""The Pareto front of human against robot effort: what the one gains where the other works more.
+"""The Pareto front of two efforts, a person's against a robot's: what the one gains where the other works more.
 
-Every point is an optimum of the scenario with other weights of the two efforts, their sum kept. The search starts
+Every point is an optimum of the scenario with other weights of the two efforts, their sum kept; whoever else lifts
+keeps the weight that the scenario gives. The search starts
 anew at both ends and in the middle of the range, follows each of these optima through all weights by warm solves, and
 then goes over the whole range in both directions as long as a neighbour's motion leads to something better. What the
 weights of acceleration and force add to the objective, and local optima, may leave a point that another one beats in
@@ -15,12 +16,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from liftopt.assessment.who import Who
 from liftopt.collocation.motion import objective_terms
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
+from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import lead, partner
 from liftopt.search.candidate import Candidate
-from liftopt.solution.summary import shares
+from liftopt.solution.grasp_loads import shares
 
 Progress = Callable[[str], None]
 DECADES = 4.0  # that the ratio of the weights runs over
@@ -36,9 +40,9 @@ class Point:
     """One compromise.
 
     Attributes:
-        weights: of the person's and the robot's squared torques.
-        efforts: the person's and the robot's integral of squared torques [N^2 m^2 s].
-        share: mean part of the vertical grasp force that the person carries.
+        weights: of the first's and the second's squared torques.
+        efforts: the first's and the second's integral of squared torques [N^2 m^2 s].
+        share: mean part of the vertical grasp force that the first carries.
         candidate: the lift, verified.
     """
 
@@ -54,55 +58,92 @@ class Front:
 
     Attributes:
         scenario: whose.
-        points: that no other point beats in both efforts, the person's effort rising.
+        between: names of the two whose efforts are traded: a person and a robot, where there are both.
+        points: that no other point beats in both efforts, the first's effort rising.
         dominated: those that one does.
-        missing: weights of person and robot for which no verified solution was found.
+        missing: weights of the two for which no verified solution was found.
     """
 
     scenario: Scenario
+    between: tuple[str, str]
     points: tuple[Point, ...]
     dominated: tuple[Point, ...]
     missing: tuple[tuple[float, float], ...]
 
 
-def pareto_front(scenario: Scenario, count: int = 11, progress: Progress | None = None) -> Front:
+def pareto_front(
+    scenario: Scenario,
+    count: int = 11,
+    progress: Progress | None = None,
+    between: Sequence[str] | None = None,
+) -> Front:
     """Return the front of a scenario from ``count`` ratios of the weights, evenly spaced in their logarithm.
 
+    Args:
+        scenario: whose.
+        count: of ratios.
+        progress: hears one line at a time.
+        between: names of the two whose efforts are traded; None takes the first person and the first robot, or the
+            second who lifts.
+
     Raises:
-        InputError: ``count`` is out of range, or the scenario weighs neither effort.
+        InputError: ``count`` is out of range, nobody has a name, or the scenario weighs neither effort.
         SolverError: the solver cannot run at all.
     """
     if not FEWEST <= count <= MOST:
         raise InputError("--points", count, f"must be a whole number from {FEWEST} to {MOST}")
-    names = list(scenario.agents)
-    if len(names) != 2:
-        raise InputError("agents", ", ".join(names), "a front is that of two agents' efforts")
-    total = sum(agent.weight for agent in scenario.agents.values())
+    one, other = pair = _pair(scenario, between)
+    total = scenario.agents[one].weight + scenario.agents[other].weight
     if total == 0:
-        raise InputError(f"{names[0]}.weight", 0.0, f"one of {names[0]}.weight and {names[1]}.weight must be above 0")
-    logs = np.linspace(DECADES / 2, -DECADES / 2, count).tolist()  # of human over robot
-    walk = _Walk(scenario, total, logs, Replanner(progress), progress or (lambda line: None))
+        raise InputError(f"{one}.weight", 0.0, f"one of {one}.weight and {other}.weight must be above 0")
+    logs = np.linspace(DECADES / 2, -DECADES / 2, count).tolist()  # of one over the other
+    walk = _Walk(scenario, pair, total, logs, Replanner(progress), progress or (lambda line: None))
     candidates = walk.best()
-    points = [_point(candidate) for candidate in candidates if candidate is not None and candidate.solved]
+    points = [_point(candidate, pair) for candidate in candidates if candidate is not None and candidate.solved]
     missing = [weights_at(total, log) for log, p in zip(logs, candidates, strict=True) if p is None or not p.solved]
     dominated = [point for point in points if any(_beats(other, point) for other in points)]
     kept = sorted((point for point in points if point not in dominated), key=lambda point: point.efforts)
-    return Front(scenario, tuple(kept), tuple(dominated), tuple(missing))
+    return Front(scenario, pair, tuple(kept), tuple(dominated), tuple(missing))
 
 
 def weights_at(total: float, log: float) -> tuple[float, float]:
-    """Return the weights of person and robot whose ratio has this logarithm to base 10."""
-    human = total / (1 + 10**-log)
-    return human, total - human
+    """Return the weights of the two whose ratio has this logarithm to base 10."""
+    one = total / (1 + 10**-log)
+    return one, total - one
+
+
+def _pair(scenario: Scenario, between: Sequence[str] | None) -> tuple[str, str]:
+    """Return the names of the two whose efforts are traded."""
+    names = list(scenario.agents)
+    if between is None:
+        other = partner(scenario)
+        if other is None:
+            raise InputError("agents", ", ".join(names), "must be two or more: a front trades two efforts")
+        return lead(scenario), other
+    for name in between:
+        if name not in names:
+            allowed = f"must be the name of one who lifts: {', '.join(names)}"
+            raise InputError("--between", name, allowed + did_you_mean(nearest(name, names)))
+    one, other = between
+    if one == other:
+        raise InputError("--between", f"{one} {other}", "must be two who lift")
+    return one, other
 
 
 class _Walk:
     """The best plan so far for every ratio, and the ways between them."""
 
     def __init__(
-        self, scenario: Scenario, total: float, logs: Sequence[float], replanner: Replanner, progress: Progress
+        self,
+        scenario: Scenario,
+        pair: tuple[str, str],
+        total: float,
+        logs: Sequence[float],
+        replanner: Replanner,
+        progress: Progress,
     ) -> None:
-        self.scenario, self.total, self.logs, self.replanner, self.progress = scenario, total, logs, replanner, progress
+        self.scenario, self.pair, self.total, self.logs = scenario, pair, total, logs
+        self.replanner, self.progress = replanner, progress
         self.candidates: list[Candidate | None] = [None] * len(logs)
 
     def best(self) -> list[Candidate | None]:
@@ -169,17 +210,17 @@ class _Walk:
         return True
 
     def _scenario(self, log: float) -> Scenario:
-        weights = zip(self.scenario.agents, weights_at(self.total, log), strict=True)
+        weights = zip(self.pair, weights_at(self.total, log), strict=True)
         return self.scenario.replace({f"{name}.weight": weight for name, weight in weights})
 
 
-def _point(candidate: Candidate) -> Point:
+def _point(candidate: Candidate, pair: tuple[str, str]) -> Point:
     motion = candidate.at(candidate.spline.phase * candidate.problem.task.duration)
     terms, agents = objective_terms(motion), candidate.scenario.agents
-    human, robot = motion.agents
-    share = float(np.nanmean(shares(motion.agents)[0]))
-    efforts = (terms[human.name], terms[robot.name])
-    return Point((agents[human.name].weight, agents[robot.name].weight), efforts, share, candidate)
+    one, other = pair
+    row = [agent.name for agent in motion.agents].index(one)
+    share = float(np.nanmean(shares(motion.agents)[row]))
+    return Point((agents[one].weight, agents[other].weight), (terms[one], terms[other]), share, candidate)
 
 
 def _beats(one: Point, other: Point) -> bool:
@@ -190,7 +231,14 @@ def _beats(one: Point, other: Point) -> bool:
 
 def ratio_text(weights: tuple[float, float]) -> str:
     """Return the ratio of two weights, not both 0, as everybody tells it: ``"1 : 100"``, ``"2.51 : 1"``."""
-    human, robot = weights
-    if not human or not robot:
-        return "1 : 0" if human else "0 : 1"
-    return f"{human / robot:.3g} : 1" if human >= robot else f"1 : {robot / human:.3g}"
+    one, other = weights
+    if not one or not other:
+        return "1 : 0" if one else "0 : 1"
+    return f"{one / other:.3g} : 1" if one >= other else f"1 : {other / one:.3g}"
+
+
+def who_of(front: Front, name: str) -> Who:
+    """Return how one of the front's scenario is told."""
+    agents = front.scenario.agents
+    kinds = [agent.kind for agent in agents.values()]
+    return Who(agents[name].kind, name, kinds.count(agents[name].kind) == 1)

@@ -22,10 +22,11 @@ from liftopt.collocation.parametric import Optimum, Tangent
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
 from liftopt.files.entries import FREE
+from liftopt.multibody.trajectory import limit_share
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
-from liftopt.solution.summary import limit_share, shares
+from liftopt.solution.grasp_loads import shares
 from liftopt.studies.parameters import Parameter, changed, parameters_of
 
 Array = npt.NDArray[np.float64]
@@ -108,6 +109,12 @@ def study(
     """
     chosen = parameters_of(candidate.scenario) if parameters is None else parameters
     return _Differences(candidate, cache).study(chosen, progress or (lambda line: None))
+
+
+def bearers(study: Study) -> tuple[str, ...]:
+    """Return the names of those whose part of the load is told: of the people, or of everybody where there are none."""
+    agents = study.candidate.problem.team.agents
+    return tuple(agent.name for agent in agents if agent.kind == "person") or tuple(agent.name for agent in agents)
 
 
 def figures(candidate: Candidate) -> dict[str, float]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.solution.summary import joint_meaning, limit_share
+from liftopt.multibody.joint_meanings import joint_meanings
+from liftopt.multibody.trajectory import AgentTrajectory, limit_share
 
 Array = npt.NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
     curves = []
     for name in np.array(robot.joint_names)[robot.moving]:
         joint = str(name).removeprefix(f"{robot.name}_")
-        meaning = joint_meaning(robot.kind, model, joint).replace("-", "\N{MINUS SIGN}")
+        meaning = joint_meanings(robot.kind, model).get(joint, "").replace("-", "\N{MINUS SIGN}")
         curves.append(_curve(robot, joint, f"{joint} ({meaning})" if meaning else joint, +1))
     return tuple(curves)
 

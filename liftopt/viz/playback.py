@@ -14,6 +14,7 @@ from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import agents_of
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
+from liftopt.viz.base import base_of
 
 Array = npt.NDArray[np.float64]
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
@@ -54,12 +55,16 @@ class Playback:
         bodies: by joint name for what an agent moves, by its own name for the object.
         forces: by agent.
         zero: (4, 4) T_world_body of every body while all joints are at zero.
+        joints: names of the bodies that each agent moves, by agent.
+        bases: (4, 4) T_world_base by agent, of its feet or of its arm's base: X ahead, Z up.
     """
 
     time: Array
     bodies: dict[str, BodyTrack]
     forces: dict[str, ForceTrack]
     zero: dict[str, Array]
+    joints: dict[str, tuple[str, ...]]
+    bases: dict[str, Array]
 
 
 def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
@@ -77,6 +82,8 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     bodies: dict[str, BodyTrack] = {}
     forces: dict[str, ForceTrack] = {}
     zero: dict[str, Array] = {}
+    joints: dict[str, tuple[str, ...]] = {}
+    bases: dict[str, Array] = {}
     for agent, track in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q = motion_between(knots, track.q, track.v, track.a, time)[0]
         placements = _placements(agent, q)
@@ -85,11 +92,13 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
         zero |= {
             name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
         }
+        joints[agent.name] = tuple(placements)
+        bases[agent.name] = base_of(agent)
     held = solution.object
     pose = motion_between(knots, held.pose, held.pose_velocity, held.pose_acceleration, time)[0]
     bodies[held.name] = _track([_object_placement(row) for row in pose])
     zero[held.name] = np.eye(4)
-    return Playback(time, bodies, forces, zero)
+    return Playback(time, bodies, forces, zero, joints, bases)
 
 
 def _check(solution: Solution) -> None:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from liftopt.assessment.who import listed, who_is
 from liftopt.errors import InputError
+from liftopt.multibody.agent import Kind
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz import FORMATS
 from liftopt.viz.plots_data import Lift
@@ -18,7 +21,7 @@ from liftopt.viz.plots_effort import posture_score, strength_used
 from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motion
 from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, robot_angles, robot_torques
 from liftopt.viz.plots_snapshots import snapshots
-from liftopt.viz.plots_style import STYLE
+from liftopt.viz.plots_style import STYLE, head
 
 PNG_DPI = 200
 
@@ -29,48 +32,84 @@ class Plot:
 
     Attributes:
         name: of its file.
-        caption: what it shows, and which figure of the paper it is the predicted side of.
+        caption: what it shows, and which figure of the paper it is the predicted side of; in ``PLOTS``, ``{all}``
+            stands for everybody in the lift.
         draw: makes it; call it in ``rc_context(STYLE)``.
+        head: whom it is about, written above it where there are several of a kind.
     """
 
     name: str
     caption: str
     draw: Callable[[Lift], Figure]
+    head: str = ""
 
 
-PLOTS: tuple[Plot, ...] = (
+@dataclass(frozen=True)
+class AgentPlot:
+    """One plot of each agent of a kind.
+
+    Attributes:
+        kind: of the agents.
+        name: of its file where there is one of the kind only.
+        what: end of the file's name where there are several, after the agent's.
+        caption: as that of a plot; ``{who}`` stands for the agent.
+        draw: makes that of one agent.
+    """
+
+    kind: Kind
+    name: str
+    what: str
+    caption: str
+    draw: Callable[[Lift, AgentTrajectory], Figure]
+
+
+PLOTS: tuple[Plot | AgentPlot, ...] = (
     Plot(
         "snapshots",
         "The lift at five moments, in the shapes of the models that were solved. Fig. 11 of the paper.",
         snapshots,
     ),
-    Plot(
+    AgentPlot(
+        "person",
         "human_arm",
-        "Shoulder and elbow flexion of the person: angle and torque, flexion positive. Predicted side of Figs. 13 and "
+        "arm",
+        "Shoulder and elbow flexion of {who}: angle and torque, flexion positive. Predicted side of Figs. 13 and "
         "14 of the paper.",
         human_arm,
     ),
-    Plot(
+    AgentPlot(
+        "person",
         "human_angles",
-        "All joint angles of the person within their ranges of motion. Zero is upright, the arm hanging, palm forward.",
+        "angles",
+        "All joint angles of {who} within their ranges of motion. Zero is upright, the arm hanging, palm forward.",
         human_angles,
     ),
-    Plot("human_torques", "All joint torques of the person and how much of the strength they use.", human_torques),
-    Plot(
-        "grasp_forces",
-        "Force of person and robot on the object by component, world axes, and who carries how much of the load. "
-        "Predicted side of Fig. 15 of the paper, and its counterpart for the robot.",
-        grasp_forces,
+    AgentPlot(
+        "person",
+        "human_torques",
+        "torques",
+        "All joint torques of {who} and how much of the strength they use.",
+        human_torques,
     ),
     Plot(
+        "grasp_forces",
+        "Force of {all} on the object by component, world axes, and who carries how much of the load. Predicted "
+        "side of Fig. 15 of the paper, and its counterpart for the robot.",
+        grasp_forces,
+    ),
+    AgentPlot(
+        "robot",
         "robot_angles",
-        "Joint angles of the robot in the signs of the paper's Table 3, with the manufacturer's joint names. Predicted "
+        "angles",
+        "Joint angles of {who} in the signs of the paper's Table 3, with the manufacturer's joint names. Predicted "
         "side of Fig. 16 of the paper.",
         robot_angles,
     ),
-    Plot(
+    AgentPlot(
+        "robot",
         "robot_torques",
-        "Joint torques of the robot with the limits they were held to. Predicted side of Figs. 17 and 18 of the paper.",
+        "torques",
+        "Joint torques of {who} with the limits they were held to. Predicted side of Figs. 17 and 18 of the paper.",
         robot_torques,
     ),
     Plot(
@@ -78,12 +117,52 @@ PLOTS: tuple[Plot, ...] = (
         "Height of the object's centre (a scenario's heights are those of the edges held), its tilt and speed.",
         object_motion,
     ),
-    Plot("ground_reaction", "What the ground does to the person.", ground_reaction),
-    Plot("strength_used", "Share of the person's strength that each joint uses over the lift.", strength_used),
-    Plot(
-        "posture_score", "RULA score of the person's posture and hand force over the lift, by its parts.", posture_score
+    AgentPlot("person", "ground_reaction", "ground_reaction", "What the ground does to {who}.", ground_reaction),
+    AgentPlot(
+        "person",
+        "strength_used",
+        "strength_used",
+        "Share of {who}'s strength that each joint uses over the lift.",
+        strength_used,
+    ),
+    AgentPlot(
+        "person",
+        "posture_score",
+        "posture_score",
+        "RULA score of {who}'s posture and hand force over the lift, by its parts.",
+        posture_score,
     ),
 )
+
+
+def plots_of(lift: Lift) -> tuple[Plot, ...]:
+    """Return the plots of a lift: those of the lift as a whole, and those of everybody in it."""
+    plots: list[Plot] = []
+    agents = lift.dense.agents
+    everybody = listed(who_is(agent, agents).label for agent in agents)
+    for plot in PLOTS:
+        if isinstance(plot, AgentPlot):
+            plots += [_of(plot, agent, lift) for agent in agents if agent.kind == plot.kind]
+        else:
+            plots.append(replace(plot, caption=plot.caption.format(all=everybody)))
+    return tuple(plots)
+
+
+def figure_names(agents: Sequence[AgentTrajectory], agent: AgentTrajectory) -> dict[str, str]:
+    """Return the names of an agent's plots by what they show, ``"angles"``."""
+    alone, plots = who_is(agent, agents).is_alone, [plot for plot in PLOTS if isinstance(plot, AgentPlot)]
+    return {plot.what: plot.name if alone else f"{agent.name}_{plot.what}" for plot in plots if plot.kind == agent.kind}
+
+
+def _of(plot: AgentPlot, agent: AgentTrajectory, lift: Lift) -> Plot:
+    agents = lift.dense.agents
+    name, alone = figure_names(agents, agent)[plot.what], who_is(agent, agents).is_alone
+    caption = plot.caption.format(who=who_is(agent, agents).called)
+
+    def draw(lift: Lift) -> Figure:
+        return plot.draw(lift, lift.dense[agent.name])
+
+    return Plot(name, caption, draw, "" if alone else agent.name)
 
 
 def write_plots(solution: Solution, out: Path, formats: Iterable[str] = FORMATS) -> list[Path]:
@@ -95,7 +174,7 @@ def write_plots(solution: Solution, out: Path, formats: Iterable[str] = FORMATS)
     try:
         out.mkdir(parents=True, exist_ok=True)
         lift, files = Lift.of(solution), []
-        for plot in PLOTS:
+        for plot in plots_of(lift):
             figure = drawn(plot, lift)
             for kind in formats:
                 files.append(out / f"{plot.name}.{kind}")
@@ -108,7 +187,10 @@ def write_plots(solution: Solution, out: Path, formats: Iterable[str] = FORMATS)
 def drawn(plot: Plot, lift: Lift) -> Figure:
     """Return the figure of ``plot``."""
     with rc_context(STYLE):
-        return plot.draw(lift)
+        figure = plot.draw(lift)
+        if plot.head:
+            head(figure, plot.head)
+        return figure
 
 
 def rendered(figure: Figure, kind: str) -> bytes:

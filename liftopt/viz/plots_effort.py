@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from liftopt.assessment.joints import NEAR_LIMIT
-from liftopt.ergonomics.posture import posture_of
-from liftopt.ergonomics.rula import rula
-from liftopt.ergonomics.strength import strength_use
+from liftopt.assessment.who import who_is
+from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.anatomy import ANATOMY
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
@@ -16,10 +16,10 @@ from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percen
 ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
 
 
-def strength_used(lift: Lift) -> Figure:
+def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return a map of the share of strength by joint and time, darker for more."""
     solution = lift.dense
-    uses = strength_use(solution)
+    uses = ergonomics_of(solution, agent).strength
     share = 100 * np.stack([use.share for use in uses])
     figure, grid = panels(1, height=2.9, left=2.15, right=1.2)
     axes = grid[0][0]
@@ -38,15 +38,15 @@ def strength_used(lift: Lift) -> Figure:
             )
     axes.text(103.5, -0.25, "peak", va="bottom", fontsize=7.5, color=INK)
     figure.colorbar(image, cax=axes.inset_axes((1.16, 0.0, 0.03, 1.0)), label="strength used [%]")
-    axes.set_title("Strength used by each joint of the person")
+    axes.set_title(f"Strength used by each joint of {who_is(agent, solution.agents).called}")
     time_axes(grid, float(solution.time[-1]))
     return figure
 
 
-def posture_score(lift: Lift) -> Figure:
+def posture_score(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return the grand score of RULA over time, and the scores it is made of."""
     solution = lift.dense
-    scores, time = rula(posture_of(solution)), percent(solution.time)
+    scores, time = ergonomics_of(solution, agent).rula, percent(solution.time)
     figure, grid = panels(2, height=1.5)
     grand, parts = (line[0] for line in grid)
     low = 0.5

@@ -6,56 +6,62 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from liftopt.assessment.who import who_is
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.solution.summary import shares
+from liftopt.solution.grasp_loads import shares
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes
+from liftopt.viz.who import stand_opposite
 
-COMPONENTS = ("x, towards the robot", "y, to the person's left", "z, up")
+# The axes of the world as a person and a robot see them who stand opposite each other, and for any others.
+PAIRED = ("x, towards the robot", "y, to the person's left", "z, up")
+COMPONENTS = ("x", "y", "z, up")
 
 
 def grasp_forces(lift: Lift) -> Figure:
-    """Return the force of person and robot on the object by component, and each one's share of the load."""
+    """Return everybody's force on the object by component, and each one's share of the load."""
     solution = lift.dense
-    moments = [agent for agent in solution.agents if agent.grasp.moments]
-    figure, grid = panels(3 + bool(moments), height=1.75)
-    human, robot, share = (line[0] for line in grid[:3])
+    agents = solution.agents
+    moments = [agent for agent in agents if agent.grasp.moments]
+    figure, grid = panels(len(agents) + 1 + bool(moments), height=1.75)
+    each, share = [line[0] for line in grid[: len(agents)]], grid[len(agents)][0]
     cap = solution.scenario.limits.max_grasp_force
-    for axes, agent in zip((human, robot), solution.agents, strict=True):
+    for axes, agent in zip(each, agents, strict=True):
         _components(axes, lift, agent, cap)
-    lows, highs = zip(human.get_ylim(), robot.get_ylim(), strict=True)
-    for axes in (human, robot):  # one scale for both
+    lows, highs = zip(*(axes.get_ylim() for axes in each), strict=True)
+    for axes in each:  # one scale for all
         axes.set_ylim(min(lows), max(highs))
         legend_above(axes, 4)
-    for agent, part, line in zip(solution.agents, shares(solution.agents), LINES, strict=False):
-        draw(share, solution.time, 100 * part, line, agent.name, lift.factor)
-    share.axhline(50.0, color=FAINT, linewidth=0.8, zorder=1)
+    for i, (agent, part) in enumerate(zip(agents, shares(agents), strict=True)):
+        draw(share, solution.time, 100 * part, LINES[i % len(LINES)], agent.name, lift.factor)
+    share.axhline(100.0 / len(agents), color=FAINT, linewidth=0.8, zorder=1)
     low, high = share.get_ylim()
     share.set_ylim(min(low, 0.0), max(high, 100.0))
     share.set(title="Load share: part of the vertical grasp force", ylabel="share of the load [%]")
-    legend_above(share, 2)
+    legend_above(share, len(agents))
     if low >= 0.0 and high <= 100.0:
         share.set_yticks(range(0, 101, 25))
     if moments:
-        _moments(grid[3][0], lift, moments)
+        _moments(grid[len(agents) + 1][0], lift, moments)
     time_axes(grid, float(solution.time[-1]))
     return figure
 
 
-def ground_reaction(lift: Lift) -> Figure:
-    """Return what the ground does to the person: force, and moment at the feet."""
+def ground_reaction(lift: Lift, agent: AgentTrajectory) -> Figure:
+    """Return what the ground does to a person: force, and moment at the feet."""
     solution = lift.dense
     figure, grid = panels(2, height=1.4)
     force, moment = (line[0] for line in grid)
-    change = solution.ground_reaction_force.copy()
+    change = agent.ground_force.copy()
     change[:, 2] -= change[0, 2]
-    weight = float(solution.ground_reaction_force[0, 2])
+    weight = float(agent.ground_force[0, 2])
+    about = ("about x (sideways)", "about y (forward)", "about z (twist)")
     for i, (axis, line) in enumerate(zip("xyz", LINES, strict=False)):
         extra = f" less {weight:.0f} N at rest" if axis == "z" else ""
         draw(force, solution.time, change[:, i], line, axis + extra, lift.factor)
-        label = ("about x (sideways)", "about y (forward)", "about z (twist)")[i]
-        draw(moment, solution.time, solution.ground_reaction_moment[:, i], line, label, lift.factor)
-    force.set(title="Ground reaction force on the person", ylabel="force [N]")
+        label = about[i] if stand_opposite(solution.scenario) else about[i][:7]
+        draw(moment, solution.time, agent.ground_moment[:, i], line, label, lift.factor)
+    force.set(title=f"Ground reaction force on {who_is(agent, solution.agents).called}", ylabel="force [N]")
     moment.set(title="Ground reaction moment at the feet", ylabel="moment [Nm]")
     for axes in (force, moment):
         axes.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
@@ -71,10 +77,11 @@ def object_motion(lift: Lift) -> Figure:
     height, turn, speed = (line[0] for line in grid)
     draw(height, solution.time, pose[:, 2], LINES[0], knots=lift.factor)
     height.set(title=f"Height of the {solution.object.name}'s centre of mass", ylabel="height of centre [m]")
-    limits = solution.scenario.limits
+    limits, paired = solution.scenario.limits, stand_opposite(solution.scenario)
+    down, turned = ("the robot's side down", "to the person's left") if paired else ("the x side down", "from x to y")
     for column, line, name, limit in (
-        (4, LINES[0], "pitch, + the robot's side down", limits.table_pitch_deg),
-        (5, LINES[1], "yaw, + to the person's left", limits.table_yaw_deg),
+        (4, LINES[0], f"pitch, + {down}", limits.table_pitch_deg),
+        (5, LINES[1], f"yaw, + {turned}", limits.table_yaw_deg),
     ):
         draw(turn, solution.time, np.degrees(pose[:, column]), line, f"{name} (limit ±{limit:g})", lift.factor)
     turn.set(title="Tilt", ylabel="angle [deg]")
@@ -87,16 +94,18 @@ def object_motion(lift: Lift) -> Figure:
 
 
 def _moments(axes: Axes, lift: Lift, agents: list[AgentTrajectory]) -> None:
-    for agent, line in zip(agents, LINES, strict=False):
-        magnitude = np.linalg.norm(agent.grasp_moment, axis=1)
-        draw(axes, lift.dense.time, magnitude, line, f"{agent.name} (cap {agent.grasp.max_moment:g} Nm)", lift.factor)
+    names = [agent.name for agent in lift.dense.agents]
+    for agent in agents:
+        line, label = LINES[names.index(agent.name) % len(LINES)], f"{agent.name} (cap {agent.grasp.max_moment:g} Nm)"
+        draw(axes, lift.dense.time, np.linalg.norm(agent.grasp_moment, axis=1), line, label, lift.factor)
     axes.set(title=f"Moment of the hands on the {lift.dense.object.name}, magnitude", ylabel="moment [Nm]")
-    legend_above(axes, 2)
+    legend_above(axes, len(agents))
 
 
 def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> None:
-    time = lift.dense.time
-    for values, line, label in zip(agent.grasp_force.T, LINES, COMPONENTS, strict=False):
+    time, agents = lift.dense.time, lift.dense.agents
+    labels = PAIRED if stand_opposite(lift.dense.scenario) else COMPONENTS
+    for values, line, label in zip(agent.grasp_force.T, LINES, labels, strict=False):
         draw(axes, time, values, line, label, lift.factor)
     magnitude = np.linalg.norm(agent.grasp_force, axis=1)
     axes.plot(percent(time), magnitude, color=INK, linewidth=0.9, label="magnitude")
@@ -104,7 +113,7 @@ def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> N
     if magnitude.max() > 0.6 * cap:
         axes.axhline(cap, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)))
     axes.set_title(
-        f"Force of the {'person' if agent.name == 'human' else agent.name} on the {lift.dense.object.name}: "
+        f"Force of {who_is(agent, agents).called} on the {lift.dense.object.name}: "
         f"at most {magnitude.max():.0f} N (cap {cap:g} N)"
     )
     axes.set_ylabel("force [N]")

@@ -9,9 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.anatomy import JointCurve, human_curves, robot_curves
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Array, Line, draw, panels, percent, time_axes
+from liftopt.viz.who import robot_of
 
 Quantity = Literal["angle", "torque"]
 UNIT = {"angle": "deg", "torque": "Nm"}
@@ -19,10 +21,10 @@ NEAR = 0.6  # a limit is drawn to scale where the curve uses this much of it
 ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
 
 
-def human_arm(lift: Lift) -> Figure:
+def human_arm(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return shoulder and elbow flexion: angle and torque (the predicted side of Figs. 13 and 14)."""
     figure, grid = panels(2, 2, height=1.7)
-    curves = {curve.joint: curve for curve in human_curves(lift.dense.agents[0])}
+    curves = {curve.joint: curve for curve in human_curves(agent)}
     for row, joint in enumerate(ARM):
         _panel(grid[row][0], lift, curves[joint], "angle", LINES[0])
         _panel(grid[row][1], lift, curves[joint], "torque", LINES[1])
@@ -33,28 +35,28 @@ def human_arm(lift: Lift) -> Figure:
     return figure
 
 
-def human_angles(lift: Lift) -> Figure:
+def human_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint angles of the person with their ranges of motion."""
-    return _grid(lift, human_curves(lift.dense.agents[0]), "angle")
+    return _grid(lift, human_curves(agent), "angle")
 
 
-def human_torques(lift: Lift) -> Figure:
+def human_torques(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint torques of the person with their strength."""
-    return _grid(lift, human_curves(lift.dense.agents[0]), "torque")
+    return _grid(lift, human_curves(agent), "torque")
 
 
-def robot_angles(lift: Lift) -> Figure:
+def robot_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint angles of the robot with their limits (the predicted side of Fig. 16)."""
-    return _grid(lift, _robot(lift), "angle")
+    return _grid(lift, _robot(lift, agent), "angle")
 
 
-def robot_torques(lift: Lift) -> Figure:
+def robot_torques(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint torques of the robot with their limits (the predicted side of Figs. 17 and 18)."""
-    return _grid(lift, _robot(lift), "torque")
+    return _grid(lift, _robot(lift, agent), "torque")
 
 
-def _robot(lift: Lift) -> tuple[JointCurve, ...]:
-    return robot_curves(lift.dense.agents[1], lift.dense.scenario.first("robot").model)
+def _robot(lift: Lift, agent: AgentTrajectory) -> tuple[JointCurve, ...]:
+    return robot_curves(agent, robot_of(lift.dense.scenario, agent).model)
 
 
 def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figure:

@@ -2,41 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from itertools import cycle
+from textwrap import wrap
 
 import numpy as np
 import pinocchio as pin
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Polygon
-from scipy.spatial import ConvexHull
 
+from liftopt.assessment.who import listed, who_is
+from liftopt.ergonomics.lift import subject_in
 from liftopt.scenario.build import agents_of, object_of
+from liftopt.solution.solution import Solution
+from liftopt.viz.base import base_of
+from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_style import BLUE, INK, VERMILION, Array
+from liftopt.viz.plots_style import BLUE, GREEN, INK, PURPLE, VERMILION, Array
+from liftopt.viz.who import stand_opposite
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
-CIRCLE = 24  # points of a drawn circle
 KEY_LENGTH, LONGEST = 0.2, 0.6  # of the arrow that the key shows, and of any [m]
 KEY_FORCES = (5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0)  # N
-ARROWS = ((BLUE, "-|>"), (VERMILION, "->"))  # color and head, by agent
+# Color and head of the arrow by agent, and both in words.
+ARROWS = (
+    (BLUE, "-|>", "blue, filled head"),
+    (VERMILION, "->", "red, open head"),
+    (GREEN, "-|>", "green, filled head"),
+    (PURPLE, "->", "pink, open head"),
+)
 HEADROOM = 0.15  # [m]
-
-
-@dataclass(frozen=True)
-class Outline:
-    """One convex part as seen from the side.
-
-    Attributes:
-        polygon: (n, 2) X and Z [m].
-        depth: Y of its middle, larger is farther away [m].
-        color: red, green, blue.
-    """
-
-    polygon: Array
-    depth: float
-    color: tuple[float, float, float]
+WORDS, LINE = 160, 0.2  # that a line below the panels holds, and its height [in]
 
 
 def snapshots(lift: Lift) -> Figure:
@@ -50,11 +46,11 @@ def snapshots(lift: Lift) -> Figure:
     key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in solution.agents))
     for axes, moment in zip(panels, MOMENTS, strict=True):
         k = round(moment * (len(solution.time) - 1))
-        outlines = [outline for model, visual, q in bodies for outline in _outlines(model, visual, q[k])]
-        for part in sorted(outlines, key=lambda part: -part.depth):
+        parts = [part for model, visual, q in bodies for part in outlines(model, visual, q[k])]
+        for part in sorted(parts, key=lambda part: -part.depth):
             axes.add_patch(Polygon(part.polygon, facecolor=part.color, edgecolor=INK, linewidth=0.35))
         axes.plot(path[: k + 1, 0], path[: k + 1, 2], color=INK, linewidth=1.0, linestyle=(0, (1, 1)), zorder=3)
-        for agent, (color, head) in zip(solution.agents, ARROWS, strict=True):
+        for agent, (color, head, _) in zip(solution.agents, cycle(ARROWS), strict=False):
             _arrow(axes, agent.grasp_position[k], KEY_LENGTH / key * agent.grasp_force[k], color, head)
         axes.axhline(0.0, color=INK, linewidth=1.0)
         axes.set_title(f"{100 * moment:.0f} %, {solution.time[k]:.2f} s", loc="center", fontsize=11)
@@ -62,11 +58,17 @@ def snapshots(lift: Lift) -> Figure:
         axes.set_aspect("equal")
         axes.spines[["left", "bottom"]].set_visible(False)
         axes.tick_params(left=False, bottom=False, labelleft=False, labelbottom=False)
-    reach = float(solution.agents[1].grasp_position[:, 0].max())
-    panels[0].set_xlim(-0.35, max(reach, solution.scenario.task.standing_distance) + 0.4)
-    panels[0].set_ylim(-0.16, max(solution.scenario.first("person").stature, 1.7) + HEADROOM)
-    _key(figure, panels[0], key, solution.object.name)
+    ahead = np.concatenate([agent.grasp_position[:, 0] for agent in solution.agents] + [_standing(solution)])
+    tall = [subject_in(solution, person.name).stature for person in solution.persons]
+    panels[0].set_xlim(float(ahead.min()) - 0.35, float(ahead.max()) + 0.4)
+    panels[0].set_ylim(-0.16, max(1.7, *tall, 0.0) + HEADROOM)
+    _key(figure, panels[0], key, solution)
     return figure
+
+
+def _standing(solution: Solution) -> Array:
+    """Return X of the base of every agent [m]."""
+    return np.array([base_of(agent)[0, 3] for agent in agents_of(solution.scenario, solution.urdfs)])
 
 
 def _key_force(largest: float) -> float:
@@ -74,16 +76,26 @@ def _key_force(largest: float) -> float:
     return next((key for key in KEY_FORCES if largest * KEY_LENGTH <= LONGEST * key), KEY_FORCES[-1])
 
 
-def _key(figure: Figure, axes: Axes, force: float, held: str) -> None:
+def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
     """Say how long an arrow is, below the first panel, and what the arrows and the dotted line are."""
     left, length = axes.get_xlim()[0] + 0.05, KEY_LENGTH
     axes.plot([left, left + length], [-0.1, -0.1], color=INK, linewidth=1.2, marker="|", markersize=6)
     axes.text(left + length + 0.05, -0.1, f"{force:g} N", va="center", fontsize=10, color=INK)
-    words = (
-        f"Seen from the person's right. Arrows: force on the {held} by the person (blue, filled head) and by the robot "
-        "(red, open head). Dotted: path of the hand."
+    agents = solution.agents
+    arrows = [
+        f"by {who_is(agent, agents).called} ({words})"
+        for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
+    ]
+    side = "the person's right" if stand_opposite(solution.scenario) else "the side, x to the right"
+    whose = "the hand" if stand_opposite(solution.scenario) else f"the hand of {who_is(agents[0], agents).called}"
+    lines = wrap(
+        f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}.",
+        WORDS,
     )
-    figure.supxlabel(words, fontsize=10.5, color=INK, y=0.01)
+    old, room, at = figure.get_figheight(), LINE * (len(lines) - 1), figure.subplotpars
+    figure.set_figheight(old + room)
+    figure.subplots_adjust(top=1 - (1 - at.top) * old / (old + room), bottom=(at.bottom * old + room) / (old + room))
+    figure.supxlabel("\n".join(lines), fontsize=10.5, color=INK, y=0.01)
 
 
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
@@ -100,34 +112,6 @@ def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
         (model, pin.buildGeomFromUrdfString(model, urdf, pin.GeometryType.VISUAL), q)
         for (model, urdf), q in zip(models, motions, strict=True)
     ]
-
-
-def _outlines(model: pin.Model, visual: pin.GeometryModel, q: Array) -> Iterator[Outline]:
-    data, placements = model.createData(), visual.createData()
-    pin.updateGeometryPlacements(model, data, visual, placements, q)
-    for shape, placement in zip(visual.geometryObjects, placements.oMg, strict=True):
-        points = _surface(shape.geometry) @ placement.rotation.T + placement.translation
-        side = points[:, [0, 2]]
-        red, green, blue, _ = shape.meshColor
-        yield Outline(side[ConvexHull(side).vertices], float(points[:, 1].mean()), (red, green, blue))
-
-
-def _surface(geometry: object) -> Array:
-    """Return points (n, 3) whose convex hull is the shape, in its own frame."""
-    half = getattr(geometry, "halfSide", None)
-    if half is not None:
-        corners = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3), axis=-1).reshape(-1, 3)
-        return np.asarray(corners * half)
-    radius = float(getattr(geometry, "radius"))  # noqa: B009  the base class has none
-    length = getattr(geometry, "halfLength", None)
-    angle = np.linspace(0.0, 2 * np.pi, CIRCLE, endpoint=False)
-    ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(CIRCLE)], axis=1) * radius
-    if length is not None:
-        end = np.array([0.0, 0.0, length])
-        return np.concatenate([ring - end, ring + end])
-    latitudes = np.linspace(-np.pi / 2, np.pi / 2, 2 * (CIRCLE // 4) + 1)
-    pole = np.array([0.0, 0.0, radius])
-    return np.concatenate([ring * np.cos(t) + pole * np.sin(t) for t in latitudes])
 
 
 def _arrow(axes: Axes, point: Array, along: Array, color: str, head: str) -> None:

@@ -102,6 +102,15 @@ def panels(rows: int, columns: int = 1, height: float = 1.0, left: float = 0.62,
     return figure, grid
 
 
+def head(figure: Figure, text: str) -> None:
+    """Write a line above all that is in a figure of ``panels``, which grows by it."""
+    old, room, at = figure.get_figheight(), 0.22, figure.subplotpars
+    new = old + room
+    figure.set_figheight(new)
+    figure.subplots_adjust(top=1 - (1 - at.top) * old / new - room / new, bottom=at.bottom * old / new)
+    figure.text(0.08 / WIDTH, 1 - 0.06 / new, text, ha="left", va="top", fontsize=10, fontweight="bold", color=INK)
+
+
 def legend_above(axes: Axes, columns: int, room: float = 0.22) -> None:
     """Put the legend into ``room`` made above the curves, a share of the height they take."""
     low, high = axes.get_ylim()

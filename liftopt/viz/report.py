@@ -2,51 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import liftopt
 from liftopt.assessment.joints import NEAR_LIMIT
-from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.assessment.who import who_is
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
-from liftopt.lab.comparison.plots import experiment_tables
+from liftopt.multibody.agent import Kind
+from liftopt.scenario.placement import edge_heights
+from liftopt.scenario.task import GraspPlace
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
-from liftopt.viz.anatomy import human_curves, robot_curves
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.report_figures import inline_comparisons, inline_figures
-from liftopt.viz.report_tables import Headline, check_rows, joint_rows, scenario_rows, source_rows
+from liftopt.viz.report_agents import force_rows, means_words, reported, subject_words, team_words
+from liftopt.viz.report_figures import inline_figures, section_figures
+from liftopt.viz.report_section import ReportSection
+from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
 from liftopt.viz.viewer_page import playback_page
-
-if TYPE_CHECKING:
-    from liftopt.lab.comparison.experiment import Experiment
+from liftopt.viz.who import stand_opposite
 
 CSS = "report.css"
 TEMPLATE = "report.html.jinja"
-HEADLINES = {
-    "person.strength": "of the person's strength",
-    "person.load_share": "of the load is on the person at most",
-    "person.grasp_force": "on the person's hand at most",
-    "robot.torque": "of a robot joint's torque limit",
-    "person.posture": "RULA posture score at worst; 7 is bad",
-}
+# By the kind of agent and what was found of it: what is written below the number, and that where there are several of
+# the kind.
+HEADLINES: tuple[tuple[Kind, str, str, str], ...] = (
+    ("person", "person.strength", "of the person's strength", "of {}'s strength"),
+    ("person", "person.load_share", "of the load is on the person at most", "of the load is on {} at most"),
+    ("person", "person.grasp_force", "on the person's hand at most", "on {}'s hand at most"),
+    ("robot", "robot.torque", "of a robot joint's torque limit", "of the torque limit of a joint of {}"),
+    ("person", "person.posture", "RULA posture score at worst; 7 is bad", "RULA posture score of {}; 7 is bad"),
+)
 
 
-def write_report(solution: Solution, file: Path, experiment: Experiment | None = None) -> None:
-    """Write the report to ``file``, with the experiment if there is one; its folder is made if need be.
+def write_report(solution: Solution, file: Path, sections: Sequence[ReportSection] = ()) -> None:
+    """Write the report to ``file``, with sections that others add; its folder is made if need be.
 
     Raises:
         InputError: the file cannot be written.
     """
     if file.is_dir():
         raise InputError("--html", str(file), "cannot be written: there is a folder of that name")
-    text = report_html(solution, experiment)
+    text = report_html(solution, sections)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
@@ -54,15 +58,14 @@ def write_report(solution: Solution, file: Path, experiment: Experiment | None =
         raise InputError("--html", str(file), f"cannot be written: {error.strerror or error}") from None
 
 
-def report_html(solution: Solution, experiment: Experiment | None = None) -> str:
-    """Return the report as one HTML page that needs nothing else; with what was recorded, if it was."""
+def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> str:
+    """Return the report as one HTML page that needs nothing else, with sections that others add before the scenario."""
     lift = Lift.of(solution)
-    dense, ergonomics = lift.dense, ergonomics_of(lift.dense)
-    human = human_curves(dense.agents[0])
-    robot = robot_curves(dense.agents[1], solution.scenario.first("robot").model)
-    summary = summary_dict(solution)
+    summary, task = summary_dict(solution), solution.scenario.task
+    by_grasps = isinstance(task.start, GraspPlace) and isinstance(task.end, GraspPlace)
     figures = inline_figures(lift)
-    compared = inline_comparisons(experiment) if experiment else {}
+    for section in sections:
+        figures |= section_figures(section)
     context: dict[str, Any] = {
         "css": Markup((files("liftopt.viz.assets") / CSS).read_text(encoding="utf-8")),
         "version": liftopt.__version__,
@@ -71,33 +74,38 @@ def report_html(solution: Solution, experiment: Experiment | None = None) -> str
         "summary": summary,
         "assessment": solution.assessment,
         "headlines": _headlines(solution),
-        "figures": {
-            name: {"svg": Markup(figure.svg), "caption": figure.caption}
-            for name, figure in (figures | compared).items()
-        },
-        "experiment": experiment,
-        "experiment_tables": experiment_tables(experiment) if experiment else {},
-        "compared": list(compared),
+        "figures": {name: {"svg": Markup(figure.svg), "caption": figure.caption} for name, figure in figures.items()},
+        "sections": sections,
         "playback": playback_page(solution),
-        "joints": {"person": joint_rows(human, dense), "robot": joint_rows(robot, dense)},
+        "people": [reported(lift, agent) for agent in lift.dense.persons],
+        "robots": [reported(lift, agent) for agent in lift.dense.robots],
+        "team": team_words(solution),
+        "means": means_words(solution.agents),
+        "heights": edge_heights(solution.scenario),
+        "height_of": "the edges they hold" if by_grasps else "its underside",
+        "paired": stand_opposite(solution.scenario),
+        "about": lambda finding: subject_words(finding, solution.agents),
+        "named": [agent.name for agent in solution.agents if not who_is(agent, solution.agents).is_alone],
+        "forces": force_rows(lift, summary),
         "near_limit": 100 * NEAR_LIMIT,
-        "ergonomics": ergonomics,
         "rula_assumptions": ASSUMPTIONS,
-        "labels": {curve.joint: curve.label for curve in human},
         "entries": scenario_rows(solution.scenario),
         "checks": check_rows(summary),
-        "sources": source_rows(solution.scenario),
+        "sources": source_rows(solution),
     }
     return _environment().get_template(TEMPLATE).render(context)
 
 
 def _headlines(solution: Solution) -> list[Headline]:
     """Return the numbers that matter most, as the assessment has them; of what is no solution it has none."""
-    told = []
-    for code, label in HEADLINES.items():
-        finding = next((finding for finding in solution.assessment if finding.code == code), None)
-        if finding is not None and finding.value is not None:
-            told.append(Headline(_number(finding), label, finding.message))
+    agents, told = solution.agents, []
+    for kind, code, label, named in HEADLINES:
+        for agent in (agent for agent in agents if agent.kind == kind):
+            alone = who_is(agent, agents).is_alone
+            found = (one for one in solution.assessment if one.code == code and (alone or one.agent == agent.name))
+            finding = next(found, None)
+            if finding is not None and finding.value is not None:
+                told.append(Headline(_number(finding), label if alone else named.format(agent.name), finding.message))
     return told
 
 

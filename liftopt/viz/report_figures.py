@@ -5,16 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from liftopt.lab.comparison.plots import drawn_comparisons
-from liftopt.viz.plots import PLOTS, drawn, rendered
+from liftopt.viz.plots import drawn, plots_of, rendered
 from liftopt.viz.plots_data import Lift
-
-if TYPE_CHECKING:
-    from liftopt.lab.comparison.experiment import Experiment
+from liftopt.viz.report_section import ReportSection
 
 # The second is as wide as the first, which few readers have; any other would shift the labels.
 FONTS = "'DejaVu Sans', Verdana, Geneva, sans-serif"
@@ -31,12 +27,12 @@ class InlineFigure:
 
 def inline_figures(lift: Lift) -> dict[str, InlineFigure]:
     """Return all plots by name."""
-    return {plot.name: _inline(plot.name, plot.caption, drawn(plot, lift)) for plot in PLOTS}
+    return {plot.name: _inline(plot.name, plot.caption, drawn(plot, lift)) for plot in plots_of(lift)}
 
 
-def inline_comparisons(found: Experiment) -> dict[str, InlineFigure]:
-    """Return the plots of an experiment by name."""
-    return {plot.name: _inline(plot.name, plot.caption, figure) for plot, figure in drawn_comparisons(found)}
+def section_figures(section: ReportSection) -> dict[str, InlineFigure]:
+    """Return the figures of an added section by name."""
+    return {item.name: _inline(item.name, item.caption, item.figure) for item in section.figures}
 
 
 def _inline(name: str, caption: str, figure: Figure) -> InlineFigure:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from liftopt.multibody.person.provenance import Quantity, subject_quantities
-from liftopt.scenario.build import subject_of
+from liftopt.ergonomics.lift import subject_in
+from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
 from liftopt.viz.anatomy import JointCurve
@@ -45,9 +44,12 @@ def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str
 
 def scenario_rows(scenario: Scenario) -> list[dict[str, str]]:
     """Return a row an entry: key, value, what it is and what is allowed."""
-    values = dict(_flat(scenario.to_dict()))
+    entries = scenario.entries().items()
+    values = {key: f"{value:g}" if isinstance(value, float) else str(value) for key, value in entries}
     rows = []
     for key, about in scenario.describe():
+        if key.startswith("task.") and key not in values:  # of the other way to say where the object is
+            continue
         what, _, allowed = about.partition(": ")
         rows.append({"key": key, "value": values.get(key, ""), "what": what, "allowed": allowed})
     return rows
@@ -69,10 +71,11 @@ def check_rows(summary: dict[str, Any]) -> list[dict[str, Any]]:
     return [*rows, _kkt_row(summary["verification"])]
 
 
-def source_rows(scenario: Scenario) -> list[dict[str, Any]]:
-    """Return a row a group of numbers of the person's model and source: how many, where from, how far to trust them."""
+def source_rows(solution: Solution) -> list[dict[str, Any]]:
+    """Return a row a group of numbers of the people's models and source: how many, where from, how certain."""
+    bodies = dict.fromkeys(subject_in(solution, person.name) for person in solution.persons)
     groups: dict[tuple[str, str, str], int] = {}
-    for item in _quantities(scenario):
+    for item in (item for body in bodies for item in subject_quantities(body)):
         key = (item.group, item.source.citation, item.source.confidence)
         groups[key] = groups.get(key, 0) + 1
     return [
@@ -98,18 +101,6 @@ def _state(passed: bool, limit: float | None) -> str:
     if limit is None:
         return "no limit"
     return "ok" if passed else "fails"
-
-
-def _quantities(scenario: Scenario) -> tuple[Quantity, ...]:
-    return subject_quantities(subject_of(scenario.first("person")))
-
-
-def _flat(tree: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    for key, value in tree.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _number(value: float, digits: int = 1) -> str:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.multibody.dh import rotation_z, translation
-from liftopt.scenario.build import subject_of
-from liftopt.scenario.placement import stand_of
+from liftopt.assessment.who import who_is
+from liftopt.ergonomics.lift import subject_in
+from liftopt.multibody.dh import translation
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
@@ -21,10 +22,11 @@ from liftopt.viz.scene_person import SHIRT, person_parts
 from liftopt.viz.scene_sawyer import gripper_parts, sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
+from liftopt.viz.who import colour_of, robot_of
 
 Array = npt.NDArray[np.float64]
 WOOD: Colour = (0.78, 0.60, 0.38)
-PATH_COLOURS: dict[str, Colour] = {"human": (0.02, 0.45, 0.70), "robot": (0.90, 0.45, 0.0)}
+SHADE = 0.75  # of a shirt against the arrows of who wears it
 PATH_RADIUS = 0.004  # [m]
 SAME = 1e-4  # distance below which two parts are in one place [m]
 GHOST_COLOUR, GHOST_TINT, GHOST_OPACITY = (0.45, 0.25, 0.80), 0.65, 0.40
@@ -41,7 +43,7 @@ class Cast:
         offset: (3,) where it is put in the world [m].
         ghost: whether it is drawn see-through.
         sawyer: the manufacturer's ``sawyer_description`` folder, or None for our own primitives.
-        shirt: colour by which the person is told from another.
+        shirt: of the first person, by which this lift is told from another; the others wear the colour of their arrows.
     """
 
     solution: Solution
@@ -78,12 +80,13 @@ def lift_commands(cast: Cast, first: Cast | None = None) -> list[Command]:
         if part.body != GROUND:
             mesh = mesh.seen_from(np.asarray(np.linalg.inv(cast.playback.zero[part.body])))
         commands.append(set_object(body_path(cast, part.body) + "/" + part.name, mesh, colour, opacity))
-    for name, force in cast.playback.forces.items():
-        root = f"{cast.root}/force/{name}"
-        commands += arrow_commands(root, PATH_COLOURS[name], opacity)
+    for agent in cast.solution.agents:
+        name, colour = agent.name, colour_of(cast.solution.agents, agent)
+        force = cast.playback.forces[name]
+        commands += arrow_commands(f"{cast.root}/force/{name}", colour, opacity)
         path = _path_mesh(force.point)
         if path is not None:
-            commands.append(set_object(f"{cast.root}/path/{name}", path, PATH_COLOURS[name], opacity))
+            commands.append(set_object(f"{cast.root}/path/{name}", path, colour, opacity))
     return commands
 
 
@@ -105,21 +108,33 @@ def body_path(cast: Cast, body: str) -> str:
 
 
 def parts_of(cast: Cast) -> list[Part]:
-    """Return everything that is drawn of the person, the robot and the object, at zero."""
-    scenario = cast.solution.scenario
-    robot, table = scenario.first("robot"), scenario.object
-    stand = stand_of(scenario, cast.solution.robots[0].name)
-    world_base = translation(stand.x, stand.y, robot.height) @ rotation_z(np.radians(stand.yaw_deg))
-    name = cast.solution.object.name
-    size = (table.depth, table.width, table.height)
-    meshes = cast.sawyer
-    arm = sawyer_parts(world_base, robot.height) if meshes is None else sawyer_mesh_parts(meshes, world_base)
-    return [
-        *person_parts(subject_of(scenario.first("person")), cast.shirt),
-        *arm,
-        *gripper_parts(world_base, robot.tool.length),
-        Part(name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)),
-    ]
+    """Return everything that is drawn of the agents and the object, at zero."""
+    held = cast.solution.scenario.object
+    parts = [part for agent in cast.solution.agents for part in _figure(cast, agent)]
+    size = (held.depth, held.width, held.height)
+    return [*parts, Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003))]
+
+
+def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
+    """Return the parts of one agent, where it stands."""
+    solution, world_base = cast.solution, cast.playback.bases[agent.name]
+    if agent.kind == "person":
+        figure = person_parts(agent.name, subject_in(solution, agent.name), _shirt(cast, agent))
+        return [part.placed(world_base) for part in figure]
+    if cast.sawyer is None:
+        arm = sawyer_parts(agent.name, world_base)
+    else:
+        arm = sawyer_mesh_parts(cast.sawyer, agent.name, world_base)
+    if not who_is(agent, solution.agents).is_alone:  # on the ground each needs names of its own
+        arm = [replace(part, name=f"{agent.name}_{part.name}") if part.body == GROUND else part for part in arm]
+    return [*arm, *gripper_parts(agent.name, world_base, robot_of(solution.scenario, agent).tool.length)]
+
+
+def _shirt(cast: Cast, person: AgentTrajectory) -> Colour:
+    if person.name == cast.solution.persons[0].name:
+        return cast.shirt
+    red, green, blue = colour_of(cast.solution.agents, person)
+    return (SHADE * red, SHADE * green, SHADE * blue)
 
 
 def _stands_still(part: Part, cast: Cast) -> bool:

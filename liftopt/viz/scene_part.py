@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from liftopt.viz.scene_mesh import Mesh
 
+Array = npt.NDArray[np.float64]
 Colour = tuple[float, float, float]
 
 
@@ -24,6 +28,10 @@ class Part:
     name: str
     colour: Colour
     mesh: Mesh
+
+    def placed(self, transform: Array) -> Part:
+        """Return the part in frame A, given T_A_B (4, 4) of the frame B that it is in."""
+        return Part(self.body, self.name, self.colour, self.mesh.seen_from(transform))
 
 
 GROUND = "ground"

@@ -31,22 +31,23 @@ TO_SIDE = (0.0, 1.0, 0.0)
 SLACK = 1.06
 
 
-def person_parts(subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
+def person_parts(name: str, subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
     """Return the subject upright at the zero pose: feet at the origin, facing +X, arms hanging, palms forward.
 
-    Legs and pelvis are on ``human_GT3``, the trunk with head and resting left arm on ``human_Q3``, the right arm on
-    ``human_Q6`` (upper arm), ``human_Q8`` (forearm) and ``human_Q10`` (hand).
+    Legs and pelvis are on joint GT3, the trunk with head and resting left arm on Q3, the right arm on Q6 (upper arm),
+    Q8 (forearm) and Q10 (hand), each called after the person: ``human_Q3``.
     """
     right = _arm(subject, RIGHT)
     left = _arm(subject, LEFT)
+    trunk = f"{name}_Q3"
     parts = [
-        *_legs(subject),
-        Part("human_Q3", "trunk", shirt, _trunk(subject)),
-        *head_parts(subject, "human_Q3", SKIN),
+        *_legs(f"{name}_GT3", subject),
+        Part(trunk, "trunk", shirt, _trunk(subject)),
+        *head_parts(subject, trunk, SKIN),
     ]
     for arm, bodies, side in (
-        (left, ("human_Q3",) * 3, "left"),
-        (right, ("human_Q6", "human_Q8", "human_Q10"), "right"),
+        (left, (trunk,) * 3, "left"),
+        (right, (f"{name}_Q6", f"{name}_Q8", f"{name}_Q10"), "right"),
     ):
         sleeve, upper, forearm, hand = arm
         parts += [
@@ -58,7 +59,7 @@ def person_parts(subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
     return parts
 
 
-def _legs(subject: Subject) -> list[Part]:
+def _legs(body: str, subject: Subject) -> list[Part]:
     at, parts = landmarks(subject), []
     breadth, depth = dimension(subject, "hipbreadth"), dimension(subject, "buttockdepth")
     crotch = at.hip - 0.05 * subject.stature
@@ -68,7 +69,7 @@ def _legs(subject: Subject) -> list[Part]:
         Ring((-0.005, 0.0, 0.45 * at.hip + 0.55 * at.omphalion), 0.46 * breadth, 0.45 * depth, 2.4),
         Ring((0.0, 0.0, at.omphalion - 0.01), 0.42 * breadth, 0.40 * depth, 2.4),
     ]
-    parts.append(Part("human_GT3", "pelvis", TROUSERS, tube(hips, TO_SIDE, round_start=0.03, round_end=0.02)))
+    parts.append(Part(body, "pelvis", TROUSERS, tube(hips, TO_SIDE, round_start=0.03, round_end=0.02)))
     thigh, calf, ankle = (girth_radius(subject, f"{name}circumference") for name in ("thigh", "calf", "ankle"))
     knee = 0.5 * (0.62 * thigh + calf)
     for side, name in ((LEFT, "left"), (RIGHT, "right")):
@@ -83,10 +84,10 @@ def _legs(subject: Subject) -> list[Part]:
             Ring((0.0, y, at.ankle + 0.03), 1.5 * ankle, 1.7 * ankle),
             Ring((0.0, y, at.ankle - 0.01), 1.5 * ankle, 1.75 * ankle),
         ]
-        parts.append(Part("human_GT3", f"{name}_leg", TROUSERS, tube(leg, TO_SIDE, round_start=0.05)))
+        parts.append(Part(body, f"{name}_leg", TROUSERS, tube(leg, TO_SIDE, round_start=0.05)))
         upper, sole = _shoe(subject, y)
-        parts.append(Part("human_GT3", f"{name}_shoe", SHOES, upper))
-        parts.append(Part("human_GT3", f"{name}_sole", SOLES, sole))
+        parts.append(Part(body, f"{name}_shoe", SHOES, upper))
+        parts.append(Part(body, f"{name}_sole", SOLES, sole))
     return parts
 
 

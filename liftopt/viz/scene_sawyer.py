@@ -28,25 +28,21 @@ TO_X = (1.0, 0.0, 0.0)
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-def sawyer_parts(world_base: Array, base_height: float) -> list[Part]:
-    """Return the robot with all joints at zero.
+def sawyer_parts(name: str, world_base: Array) -> list[Part]:
+    """Return the robot of that name with all joints at zero.
 
     Args:
-        world_base: (4, 4) T_world_base of the manufacturer's base frame.
-        base_height: of that frame above the floor [m]; the pedestal is stretched to it.
+        name: that its joints begin with.
+        world_base: (4, 4) T_world_base of the manufacturer's base frame; the pedestal reaches from it to the floor.
     """
-    parts = [_moved(part, world_base) for part in _stand(base_height)]
+    parts = [part.placed(world_base) for part in _stand(float(world_base[2, 3]))]
     frames = described_frames(np.zeros(len(JOINTS)))
     for i, (frame, link) in enumerate(zip(frames, _links(), strict=True), start=1):
         parts += [
-            _moved(Part(f"robot_Q{i}", f"l{i - 1}_{name}", colour, mesh), world_base @ frame)
-            for name, colour, mesh in link
+            Part(f"{name}_Q{i}", f"l{i - 1}_{piece}", colour, mesh).placed(world_base @ frame)
+            for piece, colour, mesh in link
         ]
     return parts
-
-
-def _moved(part: Part, transform: Array) -> Part:
-    return Part(part.body, part.name, part.colour, part.mesh.seen_from(transform))
 
 
 def _stand(base_height: float) -> list[Part]:
@@ -150,10 +146,11 @@ def _head() -> list[tuple[str, Colour, Mesh]]:
     ]
 
 
-def gripper_parts(world_base: Array, length: float) -> list[Part]:
+def gripper_parts(name: str, world_base: Array, length: float) -> list[Part]:
     """Return a two-finger gripper whose tips meet at the grasp point; nothing for the bare flange.
 
     Args:
+        name: that the robot's joints begin with.
         world_base: (4, 4) T_world_base of the manufacturer's base frame.
         length: from the flange to the grasp point, along the last joint's axis [m].
     """
@@ -169,8 +166,8 @@ def gripper_parts(world_base: Array, length: float) -> list[Part]:
         fingers.append(capsule((0.0, side * 0.036, palm), bend, 0.010))
         fingers.append(capsule(bend, (0.0, side * 0.012, tip - 0.006), 0.010, 0.008))
     hand = world_base @ described_frames(np.zeros(len(JOINTS)))[-1]
-    last = f"robot_Q{len(JOINTS)}"
+    last = f"{name}_Q{len(JOINTS)}"
     return [
-        _moved(Part(last, "gripper", BLACK, merged(body)), hand),
-        _moved(Part(last, "fingers", SILVER, merged(fingers)), hand),
+        Part(last, "gripper", BLACK, merged(body)).placed(hand),
+        Part(last, "fingers", SILVER, merged(fingers)).placed(hand),
     ]

@@ -20,9 +20,9 @@ DESCRIPTION = "urdf/sawyer_base.urdf.xacro"
 RED: Colour = (0.55, 0.07, 0.08)
 DARK: Colour = (0.16, 0.16, 0.17)
 SHARP = 0.6  # [rad]: edges sharper than this stay edges
-# The joint that moves each link of the description; what is not here is not drawn.
-BODIES = {"pedestal": GROUND, "right_arm_base_link": GROUND, "head": "robot_Q1"} | {
-    f"right_l{i}": f"robot_Q{i + 1}" for i in range(len(JOINTS))
+# The joint that moves each link of the description, None for what stands still; what is not here is not drawn.
+MOVED_BY: dict[str, str | None] = {"pedestal": None, "right_arm_base_link": None, "head": "Q1"} | {
+    f"right_l{i}": f"Q{i + 1}" for i in range(len(JOINTS))
 }
 
 
@@ -33,11 +33,12 @@ class _Visual:
     file: Path
 
 
-def sawyer_mesh_parts(folder: str | Path, world_base: Array) -> list[Part]:
-    """Return the robot with all joints at zero, from the STL files beside those its description names.
+def sawyer_mesh_parts(folder: str | Path, name: str, world_base: Array) -> list[Part]:
+    """Return the robot of that name with all joints at zero, from the STL files beside those its description names.
 
     Args:
         folder: a ``sawyer_description`` with ``urdf/`` and ``meshes/``.
+        name: that its joints begin with.
         world_base: (4, 4) T_world_base of the manufacturer's base frame.
 
     Raises:
@@ -51,7 +52,9 @@ def sawyer_mesh_parts(folder: str | Path, world_base: Array) -> list[Part]:
     for visual in _visuals(Path(folder)):
         placement = world_base @ frames.get(visual.link, np.eye(4)) @ visual.placement
         colour = DARK if visual.link == "pedestal" else RED
-        parts.append(Part(BODIES[visual.link], visual.link, colour, _load(visual.file).seen_from(placement)))
+        joint = MOVED_BY[visual.link]
+        body = GROUND if joint is None else f"{name}_{joint}"
+        parts.append(Part(body, visual.link, colour, _load(visual.file).seen_from(placement)))
     return parts
 
 
@@ -65,11 +68,11 @@ def _visuals(folder: Path) -> list[_Visual]:
     for link in tree.getroot().iter("link"):
         name, visual = str(link.get("name")), link.find("visual")
         mesh = None if visual is None else visual.find("geometry/mesh")
-        if name not in BODIES or visual is None or mesh is None:
+        if name not in MOVED_BY or visual is None or mesh is None:
             continue
         inside = str(mesh.get("filename")).split("sawyer_description/", 1)[-1]
         visuals.append(_Visual(name, _origin(visual.find("origin")), (folder / inside).with_suffix(".STL")))
-    missing = sorted(set(BODIES) - {visual.link for visual in visuals})
+    missing = sorted(set(MOVED_BY) - {visual.link for visual in visuals})
     if missing:
         raise InputError("--sawyer", str(folder), f"{DESCRIPTION} has no mesh for {', '.join(missing)}")
     return visuals

@@ -14,23 +14,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from liftopt.assessment.who import who_is
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_part import Colour
 from liftopt.viz.scene_stage import stage_commands
+from liftopt.viz.viewer_views import agents_in, head_of, views_of
+from liftopt.viz.who import colour_of
 
-Array = npt.NDArray[np.float64]
 LONGEST_ARROW = 0.40  # [m]: of the largest force shown
 APART = 2.2  # [m] between two lifts side by side, along Y
 SECOND_SHIRT: Colour = (0.10, 0.52, 0.38)
+WORDS = {"person": "human", "robot": "robot"}
 ABOVE_HEAD = 0.10  # [m]: of the name of a lift
-# Around joints: what of the person, the robot and the hands is in view [m].
-BODY, HANDS = 0.25, 0.18
-ROBOT_ABOVE_BASE = 0.65  # [m]: Sawyer's head
-BOTH = ("human", "robot")
 
 
 def playback_page(
@@ -60,7 +59,10 @@ def playback_page(
         "lifts": [_facts(cast, name) for cast, name in zip(casts, _names(casts), strict=True)],
         "duration": max(float(cast.playback.time[-1]) for cast in casts),
         "metres_per_newton": scale,
-        "sight": _sight(casts),
+        "views": [view.plain() for view in views_of(casts)],
+        "agents": _agents(casts),
+        "object": solution.object.name,
+        "labels": _labels(casts),
     }
     return _fill(data, _title(solution, other))
 
@@ -100,34 +102,43 @@ def _facts(cast: Cast, name: str) -> dict[str, Any]:
         "status": solution.status,
         "solved": solution.solved,
         "ghost": cast.ghost,
-        "colour": "#" + "".join(f"{round(255 * value):02x}" for value in cast.colour),
-        "head": [0.0, cast.offset[1], solution.scenario.first("person").stature + ABOVE_HEAD],
+        "colour": _hex(cast.colour),
         "time": np.round(playback.time, 5).tolist(),
         "force": sizes,
         "height": np.round(playback.bodies[solution.object.name].position[:, 2], 4).tolist(),
     }
 
 
-def _sight(casts: Sequence[Cast]) -> dict[str, list[list[float]]]:
-    """Return the boxes [m] that the camera presets keep in view: lowest and highest corner of each."""
-    boxes: dict[str, list[Array]] = {"human": [], "robot": [], "hands": []}
-    for cast in casts:
-        stature = cast.solution.scenario.first("person").stature
-        boxes["human"].append(np.array([[-BODY, -BODY, 0.0], [BODY, BODY, stature]]) + cast.offset)
-        for agent, force in cast.playback.forces.items():
-            bodies = cast.playback.bodies.items()
-            joints = [track.position for name, track in bodies if name.startswith(f"{agent}_")]
-            boxes[agent].append(np.vstack([np.zeros((0, 3)), *joints, force.point]) + cast.offset)
-            boxes["hands"].append(force.point + cast.offset)
-        base = cast.solution.scenario.task.standing_distance
-        top = cast.solution.scenario.first("robot").base_height + ROBOT_ABOVE_BASE
-        boxes["robot"].append(np.array([[base - 0.2, -0.35, 0.0], [base + 0.5, 0.35, top]]) + cast.offset)
-    sight = {}
-    for name, room in (("human", 0.0), ("robot", 0.05), ("hands", HANDS)):
-        points = np.vstack(boxes[name])
-        sight[name] = [points.min(axis=0) - room, points.max(axis=0) + room]
-    sight["all"] = [np.minimum(*(sight[who][0] for who in BOTH)), np.maximum(*(sight[who][1] for who in BOTH))]
-    return {name: np.round(box, 3).tolist() for name, box in sight.items()}
+def _agents(casts: Sequence[Cast]) -> list[dict[str, str]]:
+    """Return name, colour and words of everybody whose force is shown."""
+    agents, rows = agents_in(casts), []
+    for agent in agents:
+        who = f"the {WORDS[agent.kind]}" if who_is(agent, agents).is_alone else agent.name
+        rows.append({"name": agent.name, "who": who, "colour": _hex(colour_of(agents, agent))})
+    return rows
+
+
+def _labels(casts: Sequence[Cast]) -> list[dict[str, Any]]:
+    """Return what stands above heads: the names of two lifts, and of agents that there are several of."""
+    labels = []
+    for cast, name in zip(casts, _names(casts), strict=True):
+        agents = cast.solution.agents
+        if len(casts) > 1:
+            first = next(iter(cast.solution.persons), agents[0])
+            labels.append(_label(cast, first, name + (" (ghost)" if cast.ghost else ""), cast.colour))
+        for agent in agents:
+            if not who_is(agent, agents).is_alone:
+                labels.append(_label(cast, agent, agent.name, colour_of(agents, agent)))
+    return labels
+
+
+def _label(cast: Cast, agent: AgentTrajectory, text: str, colour: Colour) -> dict[str, Any]:
+    x, y, z = head_of(cast, agent).tolist()
+    return {"text": text, "colour": _hex(colour), "at": [x, y, z + ABOVE_HEAD]}
+
+
+def _hex(colour: Colour) -> str:
+    return "#" + "".join(f"{round(255 * value):02x}" for value in colour)
 
 
 def _title(solution: Solution, other: Solution | None) -> str:

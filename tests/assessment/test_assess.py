@@ -200,7 +200,8 @@ def test_a_tilt_that_is_at_its_limit_all_along_is_told_from_one_that_is_touched(
 
 
 def test_posture_is_as_grave_as_rula_says(light: Solution) -> None:
-    worst = int(ergonomics_of(between_knots(light)).rula.grand.max())
+    fine = between_knots(light)
+    worst = int(ergonomics_of(fine, fine["human"]).rula.grand.max())
     (finding,) = _of(light.assessment, "person.posture")
     assert finding.value == worst
     assert finding.severity == ("warning" if worst >= 5 else "caution" if worst >= 3 else "info")

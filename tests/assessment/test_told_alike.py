@@ -50,7 +50,8 @@ def test_terminal_json_and_report_of_one_solve(tmp_path: Path, capsys: pytest.Ca
 
 def test_peaks_are_the_same_numbers_everywhere(heavy: Any) -> None:
     solution = heavy.solution
-    fine = ergonomics_of(between_knots(solution))
+    dense = between_knots(solution)
+    fine = ergonomics_of(dense, dense["human"])
     rows = {row["joint"]: row for row in summary_dict(solution)["joints"]["human"]}
     for use in fine.strength:
         assert rows[use.joint]["largest_share_of_limit"] == pytest.approx(use.peak, rel=1e-12)

@@ -105,7 +105,7 @@ def _error_line(capsys: pytest.CaptureFixture[str]) -> str:
         (["--set", "robot.model=hal"], "robot.model = 'hal': must be"),
         (["nosuch.toml"], "nosuch.toml: no such file"),
         (["two\nlines.toml"], "two lines.toml: no such file"),
-        (["."], ".: is not a file, nor a result folder with a scenario.toml"),
+        (["."], ".: is not a file, nor a result folder with a solution.nc"),
         (["--out", "a_file"], "--out = 'a_file': cannot be written: Not a directory"),
         (["--out", "a_file/below"], "--out = 'a_file/below': cannot be written: Not a directory"),
         (["--out", "x" * 300], "cannot be written: File name too long"),

@@ -13,6 +13,7 @@ from liftopt.ergonomics.acgih import acgih_limit
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.niosh import niosh, niosh_terms
 from liftopt.ergonomics.strength import strength_use
+from liftopt.multibody.person.subject import Subject
 
 
 def test_niosh_by_hand() -> None:
@@ -38,7 +39,7 @@ def test_niosh_ends_of_the_ranges(changed: dict[str, float], name: str, wanted: 
 
 def test_niosh_takes_the_hands_place_and_the_persons_part_of_the_load(solution: Any) -> None:
     # Table 5: the hand is 40 cm ahead of the feet, from 90 to 140 cm; a level table is shared half and half at rest.
-    equation = niosh(solution)
+    equation = niosh(solution, solution["human"])
     y = solution.agents[0].grasp_position[[0, -1], 1]
     for end, vertical, side in ((equation.origin, 90.0, y[0]), (equation.destination, 140.0, y[1])):
         assert end.horizontal == pytest.approx(100 * np.hypot(0.4, side), abs=1e-4)
@@ -47,21 +48,21 @@ def test_niosh_takes_the_hands_place_and_the_persons_part_of_the_load(solution: 
 
 
 def test_scopes_are_stated(solution: Any) -> None:
-    scopes = {measure.name: measure.scope for measure in ergonomics_of(solution).measures}
+    scopes = {measure.name: measure.scope for measure in ergonomics_of(solution, solution["human"]).measures}
     assert scopes == {
         "RULA": "applies",
         "Revised NIOSH lifting equation": "indicative",
         "ISO 11228-1": "out of scope",
         "ACGIH TLV for lifting": "indicative",
     }
-    words = {measure.name: measure.reading for measure in ergonomics_of(solution).measures}
+    words = {measure.name: measure.reading for measure in ergonomics_of(solution, solution["human"]).measures}
     assert "not for one-handed lifts" in words["Revised NIOSH lifting equation"]
     assert "starts at 3 kg" in words["ISO 11228-1"]
 
 
 def test_iso_is_in_range_from_three_kilograms(solution: Any) -> None:
     heavy = replace(solution, scenario=solution.scenario.replace({"object.mass": 3.0}))
-    (iso,) = (measure for measure in ergonomics_of(heavy).measures if measure.name == "ISO 11228-1")
+    (iso,) = (measure for measure in ergonomics_of(heavy, heavy["human"]).measures if measure.name == "ISO 11228-1")
     assert (iso.scope, iso.result) == ("indicative", "not evaluated")
 
 
@@ -70,15 +71,15 @@ def test_iso_is_in_range_from_three_kilograms(solution: Any) -> None:
     [(20, 100, 32.0), (45, 100, 16.0), (70, 100, 9.0), (90, 100, None), (20, 150, 16.0), (70, 150, None),
      (20, 200, None), (45, 50, 14.0), (20, 10, 14.0), (45, 10, None)],
 )  # fmt: skip
-def test_acgih_zones(solution: Any, horizontal: float, vertical: float, wanted: float | None) -> None:
+def test_acgih_zones(horizontal: float, vertical: float, wanted: float | None) -> None:
     # A man of 1.75 m: shoulder at about 1.43 m, knuckles at about 0.75 m, mid shin at about 0.3 m.
-    assert acgih_limit(solution.scenario.first("person"), horizontal, vertical) == wanted
+    assert acgih_limit(Subject(1.75, 75.0, "male"), horizontal, vertical) == wanted
 
 
 def test_strength_use_is_torque_over_the_limit_in_its_direction(posed: Callable[..., Any]) -> None:
     # Arm straight ahead with 10 N up: the shoulder carries it by flexion torque, whose limit is 92 Nm for a man.
     lift = posed(force=(0.0, 0.0, 10.0), Q5=90.0)
-    use = {item.joint: item for item in strength_use(lift)}["Q5"]
+    use = {item.joint: item for item in strength_use(lift, lift["human"])}["Q5"]
     tau = lift.agents[0].tau[0, lift.agents[0].joint_names.index("human_Q5")]
     assert tau > 0
     assert use.peak == pytest.approx(tau / 92.0, rel=1e-12)

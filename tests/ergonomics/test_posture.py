@@ -16,6 +16,10 @@ ANGLES = (
 )  # fmt: skip
 
 
+def _posture(lift: Any) -> Posture:
+    return posture_of(lift, lift["human"])
+
+
 @pytest.mark.parametrize(
     ("joints", "wanted"),
     [
@@ -35,25 +39,25 @@ ANGLES = (
 def test_one_joint_moves_one_angle(
     posed: Callable[..., Any], joints: dict[str, float], wanted: dict[str, float]
 ) -> None:
-    posture = posture_of(posed(**joints))
+    posture = _posture(posed(**joints))
     found = {name: getattr(posture, name)[0] for name in ANGLES}
     assert found == pytest.approx(dict.fromkeys(ANGLES, 0.0) | wanted, abs=1e-9)
 
 
 def test_forearm_counts_from_the_middle_of_its_range(posed: Callable[..., Any]) -> None:
     # Full supination is Q8 = 0, full pronation -160 deg: the thumb is up at -80.
-    assert [posture_of(posed(Q8=angle)).pronation[0] for angle in (0.0, -80.0, -160.0)] == pytest.approx([-80, 0, 80])
+    assert [_posture(posed(Q8=angle)).pronation[0] for angle in (0.0, -80.0, -160.0)] == pytest.approx([-80, 0, 80])
 
 
 def test_wrist_left_and_outside(posed: Callable[..., Any]) -> None:
-    hanging: Posture = posture_of(posed())
+    hanging = _posture(posed())
     assert hanging.wrist_outside[0] == pytest.approx(0.0, abs=1e-9)  # straight below the shoulder
     assert hanging.wrist_left[0] < -0.1  # the right arm
-    across = posture_of(posed(Q5=90.0, Q4=0.0, Q6=60.0, Q7=-90.0))
+    across = _posture(posed(Q5=90.0, Q4=0.0, Q6=60.0, Q7=-90.0))
     assert across.wrist_left[0] > hanging.wrist_left[0] + 0.1
-    raised = posture_of(posed(Q4=-90.0))
+    raised = _posture(posed(Q4=-90.0))
     assert raised.wrist_outside[0] > 0.4
 
 
 def test_hand_load_is_the_force_as_a_mass(posed: Callable[..., Any]) -> None:
-    np.testing.assert_allclose(posture_of(posed(force=(3.0, 4.0, 12.0))).hand_load, 13.0 / 9.81, rtol=1e-12)
+    np.testing.assert_allclose(_posture(posed(force=(3.0, 4.0, 12.0))).hand_load, 13.0 / 9.81, rtol=1e-12)

@@ -17,9 +17,9 @@ from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.trajectory import GRAVITY
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
-from liftopt.solution.summary import GRAVITY
 
 Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")

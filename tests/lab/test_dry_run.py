@@ -11,7 +11,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.commands.cli import BAD_INPUT, SOLVED, main
+from liftopt.commands.cli import main
+from liftopt.commands.exit_status import BAD_INPUT, DONE
 from liftopt.lab.robot.action_server import PERIOD, ActionServer, MinimumJerk
 from liftopt.lab.robot.dry_run import BEFORE, POSITION_NOISE, DryRun, dry_run
 from liftopt.lab.robot.dry_run_plan import Plan
@@ -200,7 +201,7 @@ def test_the_command_writes_bags_as_a_robot_records_them(result, tmp_path, capsy
 
     out = tmp_path / "dry"
     command = ["dry-run", str(result.folder), "--mode", "position_w_id", "--trials", "1", "--goal-time", "0.2"]
-    assert main([*command, "--out", str(out)]) == SOLVED
+    assert main([*command, "--out", str(out)]) == DONE
     text = capsys.readouterr().out
     assert "right_j3" in text and "The person's hand is led off by at most" in text
     files = ["dry_run.nc", "dry_run.svg", "summary.json", "trial_1.bag"]

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.commands.cli import BAD_INPUT, SOLVED, main
+from liftopt.commands.cli import main
+from liftopt.commands.exit_status import BAD_INPUT, DONE
 from liftopt.errors import InputError
 from liftopt.lab.robot import trajectory_files
 from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
@@ -41,7 +42,7 @@ def trajectory(result: Any) -> JointTrajectory:
 def folder(result: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("rosbags", reason="rosbags is in the extra 'lab'")
     out = tmp_path_factory.mktemp("export") / "out"
-    assert main(["export", str(result.folder), "--out", str(out), "--goal-time", str(GOAL_TIME)]) == SOLVED
+    assert main(["export", str(result.folder), "--out", str(out), "--goal-time", str(GOAL_TIME)]) == DONE
     return out
 
 
@@ -229,5 +230,5 @@ def test_only_an_unsolved_lift_or_a_missing_package_stop_it(result, tmp_path, ca
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "rosbags" else there(name))
     assert main(["export", str(result.folder), "--out", str(tmp_path / "a"), "--format", "ros2"]) == BAD_INPUT
     assert 'pip install "liftopt[lab]"' in capsys.readouterr().err
-    assert main(["export", str(result.folder), "--out", str(tmp_path / "b"), "--format", "csv"]) == SOLVED
+    assert main(["export", str(result.folder), "--out", str(tmp_path / "b"), "--format", "csv"]) == DONE
     assert [path.name for path in (tmp_path / "b").iterdir()] == ["trajectory.csv"]

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from liftopt.commands.cli import BAD_INPUT, SOLVED, main
+from liftopt.commands.cli import main
+from liftopt.commands.exit_status import BAD_INPUT, DONE
 from liftopt.errors import InputError
 from liftopt.lab.robot.action_server import server_curve
 from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
@@ -92,7 +93,7 @@ def test_a_rate_at_which_the_server_is_too_fast_is_refused(
     k = min(int(float(found[3]) * 10.0), len(curves) - 1)
     fastest = max(np.abs(curves[i].deriv()(np.linspace(0.0, 0.1, 1001))).max() for i in (k - 1, k))
     assert abs(float(found[2])) == pytest.approx(fastest, abs=1e-3) and fastest > 1.005 * limit
-    assert export(kept, tmp_path / "fine", "--rate", found[4]) == SOLVED
+    assert export(kept, tmp_path / "fine", "--rate", found[4]) == DONE
 
 
 def test_the_default_rate_stays_within_the_limits_and_on_the_plan(result: Any, gentle: Any) -> None:
@@ -112,11 +113,11 @@ def test_leaving_the_plan_is_said(result: Any, tmp_path: Path, capsys: pytest.Ca
     assert off > 1e-3
     save(solution, tmp_path / "slow")
     words = ["export", str(tmp_path / "slow"), "--format", "csv", "--json", "--out"]
-    assert main([*words, str(tmp_path / "coarse"), "--rate", "10"]) == SOLVED
+    assert main([*words, str(tmp_path / "coarse"), "--rate", "10"]) == DONE
     told = json.loads(capsys.readouterr().out)
     assert told["off_plan"] == pytest.approx(off, rel=0.02) and told["files"] == ["trajectory.csv"]
     assert f"leaves the plan by {told['off_plan']:.4f} rad" in " ".join(told["notes"])
-    assert main([*words, str(tmp_path / "fine")]) == SOLVED
+    assert main([*words, str(tmp_path / "fine")]) == DONE
     assert "leaves the plan" not in capsys.readouterr().out
 
 
@@ -133,14 +134,14 @@ def test_a_start_too_far_from_the_arm_is_refused(
     """The server's own mode, position_w_id, gives up at 0.2 rad, its velocity mode beyond 1 rad."""
     start = trajectory.position[0]
     for name, off, mode, status in (
-        ("a", 0.19, "position_w_id", SOLVED), ("b", 0.21, "position_w_id", BAD_INPUT),
-        ("c", 0.21, "position", BAD_INPUT), ("d", 0.6, "velocity", SOLVED), ("e", 1.2, "velocity", BAD_INPUT),
+        ("a", 0.19, "position_w_id", DONE), ("b", 0.21, "position_w_id", BAD_INPUT),
+        ("c", 0.21, "position", BAD_INPUT), ("d", 0.6, "velocity", DONE), ("e", 1.2, "velocity", BAD_INPUT),
     ):  # fmt: skip
         pose = start - off * np.eye(7)[5]
         words = ["--current-pose", str(pose.tolist()), *(() if mode == "position_w_id" else ("--mode", mode))]
         assert export(result, tmp_path / name, *words) == status, (off, mode)
         told = capsys.readouterr()
-        if status == SOLVED:
+        if status == DONE:
             assert f"the arm is {off:.3f} rad from the start" in told.out
         else:
             accepted = "1 rad" if mode == "velocity" else "0.2 rad"
@@ -155,7 +156,7 @@ def test_a_step_of_acceleration_is_said_with_its_size_and_how_to_have_none(
     result: Any, gentle: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """From rest, the acceleration at the start is twice the way over the time squared."""
-    assert export(result, tmp_path / "a") == SOLVED
+    assert export(result, tmp_path / "a") == DONE
     said = capsys.readouterr().out
     found = re.search(
         r"starts with a step of acceleration \((\S+) rad/s\^2 in (\S+)\) and ends with a step of acceleration "
@@ -171,5 +172,5 @@ def test_a_step_of_acceleration_is_said_with_its_size_and_how_to_have_none(
         step = 2.0 * way / 1e-3**2
         assert joint == JOINTS[int(np.argmax(np.abs(step)))], row
         assert float(size) == pytest.approx(step[JOINTS.index(joint)], rel=0.02)
-    assert export(gentle, tmp_path / "b") == SOLVED
+    assert export(gentle, tmp_path / "b") == DONE
     assert "step of acceleration" not in capsys.readouterr().out

@@ -174,12 +174,10 @@ def test_varied_scenarios_are_kept_in_their_ranges_with_their_references() -> No
     for varied in kept:
         scenario = varied.scenario()
         for key, (lower, upper) in scenarios.RANGES.items():
-            value: Any = scenario
             if key == "clearance":
                 value = scenario.task.standing_distance - scenario.task.start.human_distance - scenario.object.depth
             else:
-                for name in key.split("."):
-                    value = getattr(value, name)
+                value = scenario.value(key)
             assert lower - 1e-9 <= value <= upper + 1e-9, key
 
 

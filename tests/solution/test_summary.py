@@ -13,7 +13,8 @@ from rich.console import Console
 
 from liftopt.commands.summary_text import print_details
 from liftopt.multibody.dh import ROTATION_WORLD_PAPER, BodyInertia, DHChain, frame_transforms, human_rows
-from liftopt.solution.summary import HUMAN_JOINTS, SAWYER_JOINTS, summary_dict
+from liftopt.multibody.joint_meanings import HUMAN_JOINTS, SAWYER_JOINTS
+from liftopt.solution.summary import summary_dict
 
 
 @pytest.fixture(autouse=True)

@@ -80,7 +80,7 @@ def refused(
     def begin(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("liftopt.search.solve.lift", begin)
+    monkeypatch.setattr("liftopt.search.solve.solve", begin)
     monkeypatch.setattr("liftopt.viz.viewer_page.playback_page", begin)
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")

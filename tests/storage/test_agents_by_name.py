@@ -16,6 +16,7 @@ import xarray as xr
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario, scenario_from_dict
+from liftopt.solution.finding import Assessment, Finding
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.storage.dataset import to_xarray
@@ -72,6 +73,9 @@ def written(request: pytest.FixtureRequest, kept: Any) -> Solution:
         urdfs={agent.name: agent.urdf for agent in agents} | {held.name: held.urdf},
         objective_terms={name: float(k) for k, name in enumerate(names)},
         objective_weights=dict.fromkeys(names, 0.5),
+        assessment=Assessment.of(
+            [Finding(f"verdict.{kind}", "info", "", "") for kind in ("mathematics", *(a.kind for a in agents))]
+        ),
     )
 
 
@@ -81,6 +85,7 @@ def test_what_is_read_is_what_was_written(written: Solution, tmp_path: Path) -> 
     assert read.scenario == written.scenario
     assert read.urdfs == written.urdfs
     assert read.objective_terms == written.objective_terms
+    assert read.assessment == written.assessment
     for one, other in ((read.object, written.object), *zip(read.agents, written.agents, strict=True)):
         for field in dataclasses.fields(one):
             if isinstance(value := getattr(other, field.name), np.ndarray):

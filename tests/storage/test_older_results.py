@@ -42,25 +42,35 @@ def test_saving_it_again_makes_one_of_today(kept: Any, older: Path) -> None:
     assert (older / "solution.nc").read_bytes() == (kept.folder / "solution.nc").read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("spoil", "told"),
-    [
-        (lambda folder: (folder / "scenario.toml").unlink(), "scenario.toml: no such file; a result of an earlier"),
-        (lambda folder: (folder / "scenario.toml").write_text("schema = 1\n"), "duration: is missing"),
-        (lambda folder: shutil.rmtree(folder / "models"), "models/human_arm.urdf: cannot be read"),
-        (lambda folder: (folder / "models" / "table.urdf").write_bytes(b"\xff"), "table.urdf: is a model that cannot"),
-        (lambda folder: (folder / "models" / "table.urdf").write_text("<html/>"), "the model of table cannot be read"),
-        (
-            lambda folder: shutil.copy(folder / "models" / "table.urdf", folder / "models" / "sawyer.urdf"),
-            "the model of robot is not that of the result's scenario",
-        ),
-        (lambda folder: (folder / ".older-result").mkdir(), "the one before it is in "),
-    ],
-    ids=lambda given: given if isinstance(given, str) else "",
-)
-def test_one_that_is_not_whole_is_one_clear_line(
-    older: Path, spoil: Callable[[Path], object], told: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
+    "no scenario": (
+        lambda folder: (folder / "scenario.toml").unlink(),
+        "scenario.toml: no such file; a result of an earlier",
+    ),
+    "another scenario": (
+        lambda folder: (folder / "scenario.toml").write_text("schema = 1\n"),
+        "duration: is missing",
+    ),
+    "no models": (lambda folder: shutil.rmtree(folder / "models"), "models/human_arm.urdf: cannot be read"),
+    "a model of bytes": (
+        lambda folder: (folder / "models" / "table.urdf").write_bytes(b"\xff"),
+        "table.urdf: is a model that cannot",
+    ),
+    "no URDF": (
+        lambda folder: (folder / "models" / "table.urdf").write_text("<html/>"),
+        "the model of table cannot be read",
+    ),
+    "another model": (
+        lambda folder: shutil.copy(folder / "models" / "table.urdf", folder / "models" / "sawyer.urdf"),
+        "the model of robot is not that of the result's scenario",
+    ),
+    "half written": (lambda folder: (folder / ".older-result").mkdir(), "the one before it is in "),
+}
+
+
+@pytest.mark.parametrize("case", SPOILT)
+def test_one_that_is_not_whole_is_one_clear_line(case: str, older: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spoil, told = SPOILT[case]
     spoil(older)
     with pytest.raises(InputError):
         load_result(older)

@@ -17,7 +17,7 @@ from liftopt.commands.pareto import front_dict, table
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.solve import solve
 from liftopt.studies.pareto import Front, pareto_front, ratio_text, weights_at
-from liftopt.viz.plots_pareto import pareto_figure
+from liftopt.studies.pareto_plot import pareto_figure
 from liftopt.viz.plots_style import STYLE
 
 ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
@@ -94,7 +94,8 @@ def test_command_writes_table_json_and_figures(
     """The front itself is the other tests'; the command is given it."""
     asked: list[tuple[Scenario, int]] = []
 
-    def given(scenario: Scenario, count: int, _: object) -> Front:
+    def given(scenario: Scenario, count: int, _: object, between: object) -> Front:
+        assert between is None
         asked.append((scenario, count))
         return front
 
@@ -145,7 +146,7 @@ def test_terminal_and_figure_tell_the_same_ratios(front: Front) -> None:
     """The ratio with 1 for the smaller weight, by hand; the figure's labels start with what the table's rows do."""
     for weights, text in (((0.0198, 1.98), "1 : 100"), ((1.0, 1.0), "1 : 1"), ((3.98, 0.1), "39.8 : 1")):
         assert ratio_text(weights) == text
-    rows = [line.strip() for line in table(front_dict(front)).splitlines()]
+    rows = [line.strip() for line in table(front, front_dict(front)).splitlines()]
     labels = [text.get_text() for text in pareto_figure(front).axes[0].texts]
     assert "1 : 1" in {label.partition(",")[0] for label in labels}
     for label in labels:

@@ -16,12 +16,12 @@ from liftopt.collocation.problem import Problem
 from liftopt.commands.cli import main
 from liftopt.commands.sensitivity import study_dict, table
 from liftopt.control.replanning import Replanner
+from liftopt.multibody.trajectory import limit_share
 from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.solve import solve
-from liftopt.solution.summary import limit_share
 from liftopt.studies.parameters import Parameter, changed, parameters_of
 from liftopt.studies.sensitivity import Study, figures, study
 

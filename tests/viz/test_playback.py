@@ -184,6 +184,6 @@ def _drawn(commands: list[dict[str, Any]]) -> set[str]:
     "subject", [Subject(1.75, 75.0, "male"), Subject(1.6, 60.0, "female"), Subject(2.0, 60.0, "male")]
 )
 def test_the_person_is_as_tall_as_the_subject_and_stands_on_the_floor(subject: Subject) -> None:
-    vertices = np.vstack([part.mesh.vertices for part in person_parts(subject)])
+    vertices = np.vstack([part.mesh.vertices for part in person_parts("human", subject)])
     assert vertices[:, 2].max() == pytest.approx(subject.stature, abs=0.03)  # with hair
     assert vertices[:, 2].min() == pytest.approx(0.0, abs=0.005)

@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 
 from liftopt.errors import InputError
 from liftopt.multibody.person.range_of_motion import RANGES
-from liftopt.solution.summary import shares
+from liftopt.solution.grasp_loads import shares
 from liftopt.viz import FORMATS
 from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
-from liftopt.viz.plots import PLOTS, drawn, rendered, write_plots
+from liftopt.viz.plots import drawn, plots_of, rendered, write_plots
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import LINES
 
@@ -31,7 +31,7 @@ def lift(solved: Callable[..., Any]) -> Lift:
 
 @pytest.fixture(scope="module")
 def figures(lift: Lift) -> dict[str, Figure]:
-    return {plot.name: drawn(plot, lift) for plot in PLOTS}
+    return {plot.name: drawn(plot, lift) for plot in plots_of(lift)}
 
 
 def _panel(figure: Figure, title: str) -> Any:

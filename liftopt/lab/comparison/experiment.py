@@ -1,4 +1,4 @@
-"""The experiment beside the prediction: recordings of the person, the hand's force and the robot, curve by curve."""
+"""The experiment beside the prediction: recordings of a person, the hand's force and a robot, curve by curve."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.comparison.comparison import SAMPLES, SHARE, Comparison
 from liftopt.lab.comparison.motion_start import lift_start
 from liftopt.lab.forces.force_record import ForceRecord
+from liftopt.lab.meant import the_person, the_robot
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.robot.robot_record import RobotRecord
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
@@ -53,6 +56,8 @@ def experiment(
     forces: Sequence[ForceRecord] = (),
     robot: Sequence[RobotRecord] = (),
     forces_lift: tuple[float, float] | None = None,
+    person: str | None = None,
+    robot_name: str | None = None,
 ) -> Experiment:
     """Return the comparison of a predicted lift with recordings of it, each in normalised time: 0 to 100 % of the lift.
 
@@ -62,9 +67,12 @@ def experiment(
         forces: of the hand, one a trial.
         robot: one a trial; each lift lasts as long as the predicted one from its beginning, see ``lift_start``.
         forces_lift: start and end of the lift in ``forces``, after each trial's first sample [s]; None takes the whole.
+        person: whom ``mocap`` and ``forces`` are of; None where only one lifts.
+        robot_name: whose ``robot`` is; None where there is only one.
 
     Raises:
-        InputError: the lift is not solved, there is nothing to compare with, or a recording does not hold the lift.
+        InputError: the lift is not solved, there is nothing to compare with, a recording does not hold the lift, or
+            nobody is the one that is meant.
     """
     if not solution.solved:
         raise InputError("RESULT", solution.status, "must be a solved and verified lift to be compared")
@@ -73,17 +81,19 @@ def experiment(
     dense = resample(solution, FACTOR)
     notes: list[str] = []
     found = [
-        *_person(dense, mocap, notes),
-        *_hand(dense, forces, forces_lift, notes),
-        *_robot(dense, robot, notes),
+        *_person(dense, person, mocap, notes),
+        *_hand(dense, person, forces, forces_lift, notes),
+        *_robot(dense, robot_name, robot, notes),
     ]
     return Experiment(tuple(found), float(solution.time[-1]), tuple(notes))
 
 
-def _person(dense: Solution, records: Sequence[RecordedLift], notes: list[str]) -> Iterator[Comparison]:
+def _person(
+    dense: Solution, person: str | None, records: Sequence[RecordedLift], notes: list[str]
+) -> Iterator[Comparison]:
     if not records:
         return
-    human = dense.agents[0]
+    human = the_person(dense, person)
     for curve, joint in zip(human_curves(human), ANATOMY, strict=True):
         columns = [(record, record.joint_names.index(f"human_{joint.joint}")) for record in records]
         angles = [record.over_lift(np.degrees(joint.sign * record.q[:, i]), SAMPLES) for record, i in columns]
@@ -99,7 +109,8 @@ def _person(dense: Solution, records: Sequence[RecordedLift], notes: list[str]) 
         vertical = [record.over_lift(record.hand_force[:, 2], SAMPLES) for record in loaded]
         label = "Vertical force (mocap)"
         yield _compared("hand_force", "mocap", label, "N", dense, human.grasp_force[:, 2], vertical)
-    person = dense.scenario.first("person")
+    asked = dense.scenario.agents[human.name]
+    assert isinstance(asked, Person)
     for record in records:
         subject, start = record.subject, record.carried or (record.time[0], record.time[-1])
         what = "while the object is carried" if record.carried else "all of the recording, which shows no object"
@@ -108,15 +119,19 @@ def _person(dense: Solution, records: Sequence[RecordedLift], notes: list[str]) 
             f"predicted {dense.time[-1]:.2f} s"
         )
         notes.append(f"{record.source}: force of the hand behind the joint torques: {record.force_from}")
-        if (subject.stature, subject.mass, subject.sex) != (person.stature, person.mass, person.sex):
+        if (subject.stature, subject.mass, subject.sex) != (asked.stature, asked.mass, asked.sex):
             notes.append(
                 f"{record.source}: the person recorded is {subject.stature:.3f} m, {subject.mass:g} kg, {subject.sex}; "
-                f"predicted is one of {person.stature:.3f} m, {person.mass:g} kg, {person.sex}"
+                f"predicted is one of {asked.stature:.3f} m, {asked.mass:g} kg, {asked.sex}"
             )
 
 
 def _hand(
-    dense: Solution, records: Sequence[ForceRecord], span: tuple[float, float] | None, notes: list[str]
+    dense: Solution,
+    person: str | None,
+    records: Sequence[ForceRecord],
+    span: tuple[float, float] | None,
+    notes: list[str],
 ) -> Iterator[Comparison]:
     if not records:
         return
@@ -138,14 +153,16 @@ def _hand(
         notes.append("force sensors: each trial's first and last sample are taken for the lift's start and end")
     notes.append("force sensors: fingers minus thumb is compared with the vertical force, as if the object stays level")
     label = "Vertical force (sensors)"
-    yield _compared("hand_force", "sensors", label, "N", dense, dense.agents[0].grasp_force[:, 2], trials)
+    yield _compared("hand_force", "sensors", label, "N", dense, the_person(dense, person).grasp_force[:, 2], trials)
 
 
-def _robot(dense: Solution, records: Sequence[RobotRecord], notes: list[str]) -> Iterator[Comparison]:
+def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], notes: list[str]) -> Iterator[Comparison]:
     if not records:
         return
-    duration, agent = float(dense.time[-1]), dense.agents[1]
-    curves = robot_curves(agent, dense.scenario.first("robot").model)
+    duration, agent = float(dense.time[-1]), the_robot(dense, name, "--robot-name")
+    asked = dense.scenario.agents[agent.name]
+    assert isinstance(asked, Robot)
+    curves = robot_curves(agent, asked.model)
     starts = [lift_start(record, dense.time, agent.q[:, agent.moving]) for record in records]
     angles = np.stack(
         [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
@@ -174,17 +191,16 @@ def _robot(dense: Solution, records: Sequence[RobotRecord], notes: list[str]) ->
         "efforts are taken for the joints' torques with gravity's part in them, positive as the joint's angle; "
         "JointState does not say which a robot means"
     )
-    notes += _other_reading(dense, angles.mean(axis=0), torques.mean(axis=0))
+    notes += _other_reading(dense, agent, angles.mean(axis=0), torques.mean(axis=0))
 
 
-def _other_reading(dense: Solution, q: Array, effort: Array) -> list[str]:
+def _other_reading(dense: Solution, agent: AgentTrajectory, q: Array, effort: Array) -> list[str]:
     """Return a note if efforts (S, 7) at angles q (S, 7) fit better with another sign, or as torques beyond gravity."""
-    robot = agent_of(dense.scenario, dense.agents[1].name, dense.urdfs)
-    moving = dense.agents[1].moving
+    robot, moving = agent_of(dense.scenario, agent.name, dense.urdfs), agent.moving
     full, data = np.zeros((len(q), robot.model.nq)), robot.model.createData()
     full[:, moving] = q
     gravity = np.array([pin.computeGeneralizedGravity(robot.model, data, row)[moving] for row in full])
-    predicted = np.stack([_over_lift(dense, column) for column in dense.agents[1].tau[:, moving].T], axis=1)
+    predicted = np.stack([_over_lift(dense, column) for column in agent.tau[:, moving].T], axis=1)
     readings = {
         "as they are": effort,
         "with the other sign": -effort,

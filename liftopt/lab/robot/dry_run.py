@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import ModelError
+from liftopt.lab.meant import the_robot
 from liftopt.lab.robot.action_server import PERIOD, ActionServer, Command, Mode
 from liftopt.lab.robot.dry_run_plan import Plan
 from liftopt.lab.robot.joint_trajectory import JointTrajectory, joint_trajectory
@@ -93,6 +94,7 @@ def dry_run(
     trials: int = 3,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
+    robot: str | None = None,
 ) -> DryRun:
     """Simulate the action server and the arm; the same arguments give the same numbers.
 
@@ -103,13 +105,14 @@ def dry_run(
         trials: how many.
         seed: of what differs between them.
         progress: hears one line a trial.
+        robot: its name; None where there is only one.
 
     Raises:
-        InputError: the solution is not solved, or MuJoCo is not installed.
+        InputError: the solution is not solved, MuJoCo is not installed, or no robot is the one that is meant.
         ModelError: the arm runs away.
     """
-    trajectory = joint_trajectory(solution)
-    plan = Plan.of(solution)
+    arm = the_robot(solution, robot)
+    trajectory, plan = joint_trajectory(solution, robot=arm.name), Plan.of(solution, arm.name)
     duration = float(trajectory.time[-1])
     first, last = -round(BEFORE / PERIOD), round((duration + goal_time + AFTER) / PERIOD)
     time = PERIOD * np.arange(first, last + 1, dtype=float)
@@ -117,7 +120,8 @@ def dry_run(
     for trial in range(trials):
         if progress is not None:
             progress(f"trial {trial + 1} of {trials} in {mode} mode")
-        runs.append(_trial(solution, trajectory, plan, mode, goal_time, time, np.random.default_rng([seed, trial])))
+        rng = np.random.default_rng([seed, trial])
+        runs.append(_trial(solution, arm.name, trajectory, plan, mode, goal_time, time, rng))
     return DryRun(
         mode, trajectory, goal_time, time, plan.at(plan.position, time), plan.at(plan.torque, time),
         plan.at(plan.tip, time), tuple(runs),
@@ -126,6 +130,7 @@ def dry_run(
 
 def _trial(
     solution: Solution,
+    robot: str,
     trajectory: JointTrajectory,
     plan: Plan,
     mode: Mode,
@@ -137,13 +142,13 @@ def _trial(
     friction = rng.uniform(1 - FRICTION_SPREAD, 1 + FRICTION_SPREAD, 7) * (1.0 if stiff else FRICTION_LEFT)
     load = rng.uniform(1 - LOAD_SPREAD, 1 + LOAD_SPREAD)
     phase = int(rng.integers(TICKS))  # of the server's clock to the recorder's [steps]
-    arm = SimulatedArm(solution, friction, stiff)
+    arm = SimulatedArm(solution, friction, stiff, robot)
     streamed, holding = (None, np.zeros(7)) if stiff else _above_gravity(arm, trajectory, plan)
     server = ActionServer(mode, trajectory, goal_time, streamed)
     arm.rest(JOINT_SIGNS * trajectory.position[0], load * plan.force[0], load * plan.moment[0])
     noise = rng.standard_normal((len(time), 3, 7))
     noise *= np.array([POSITION_NOISE, VELOCITY_NOISE, 1.0])[:, None]
-    noise[:, 2] *= TORQUE_NOISE * solution.agents[1].limits.tau_upper
+    noise[:, 2] *= TORQUE_NOISE * solution[robot].limits.tau_upper
     reached, played, fastest = 0, 0, round(FASTEST * PERIOD / plan.step)
     command = Command(np.zeros(7), np.zeros(7), holding)  # before the goal: hold still
     states, tips = np.zeros((len(time), 3, 7)), np.zeros((len(time), 3))

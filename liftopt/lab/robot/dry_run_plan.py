@@ -1,4 +1,4 @@
-"""What a solution asks of the robot, as a simulated arm follows it: the motion, and rest before and after it.
+"""What a solution asks of a robot, as a simulated arm follows it: the motion, and rest before and after it.
 
 A motion that starts with a step of acceleration has another force on the gripper at its start than at rest before it,
 and another torque. Rest holds the object by the smallest change of the forces, and moments if any, that the solution
@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.lab.meant import the_robot
 from liftopt.lab.robot.simulated_arm import STEP
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
-from liftopt.multibody.trajectory import agent_trajectory, cross
+from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory, cross
 from liftopt.scenario.build import agent_of, object_of
 from liftopt.solution.interpolation import linear, resample
 from liftopt.solution.solution import Solution
@@ -45,13 +46,21 @@ class Plan:
     moment: Array
 
     @classmethod
-    def of(cls, solution: Solution) -> Plan:
-        """Return the plan of a solved lift."""
+    def of(cls, solution: Solution, robot: str | None = None) -> Plan:
+        """Return the plan of a solved lift.
+
+        Args:
+            solution: the lift.
+            robot: its name; None where there is only one.
+
+        Raises:
+            InputError: no robot is the one that is meant.
+        """
         interval = float(solution.time[1] - solution.time[0])
         dense = resample(solution, max(1, round(interval / STEP / 2)))
-        robot = dense.agents[1]
-        force, moment, torque = -robot.grasp_force, -robot.grasp_moment, JOINT_SIGNS * robot.tau[:, robot.moving]
-        before, after = (_at_rest(dense, k) for k in (0, -1))
+        arm = the_robot(dense, robot)
+        force, moment, torque = -arm.grasp_force, -arm.grasp_moment, JOINT_SIGNS * arm.tau[:, arm.moving]
+        before, after = (_at_rest(dense, arm, k) for k in (0, -1))
         rows = [
             np.vstack([first, rows, last])
             for first, rows, last in zip(before, (torque, force, moment), after, strict=True)
@@ -59,9 +68,9 @@ class Plan:
         return cls(
             float(dense.time[1]),
             np.concatenate([[-AT_ONCE], dense.time, [dense.time[-1] + AT_ONCE]]),
-            _ends_repeated(JOINT_SIGNS * robot.q[:, robot.moving]),
+            _ends_repeated(JOINT_SIGNS * arm.q[:, arm.moving]),
             rows[0],
-            _ends_repeated(robot.grasp_position),
+            _ends_repeated(arm.grasp_position),
             rows[1],
             rows[2],
         )
@@ -84,12 +93,16 @@ def _ends_repeated(rows: Array) -> Array:
     return np.vstack([rows[:1], rows, rows[-1:]])
 
 
-def _at_rest(dense: Solution, k: int) -> tuple[Array, Array, Array]:
-    """Return the robot's torques (7,), force and moment on its gripper (3,) that hold the object still where it is."""
-    robot, held = dense.agents[1], object_of(dense.scenario, dense.urdfs)
+def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Array, Array]:
+    """Return a robot's torques (7,), force and moment on its gripper (3,) that hold the object still where it is."""
+    held = object_of(dense.scenario, dense.urdfs)
     arms = dense.object.grasp_position[k] - dense.object.pose[k, :3]
-    columns, loads = [], []
+    columns: list[Array] = []
+    loads: list[Array] = []
+    first = 0
     for agent, arm in zip(dense.agents, arms, strict=True):
+        if agent.name == robot.name:
+            first = sum(len(load) for load in loads)
         columns.append(np.vstack([np.eye(3), cross(arm, np.eye(3)).T]))
         loads.append(agent.grasp_force[k])
         if agent.grasp.moments:
@@ -98,7 +111,7 @@ def _at_rest(dense: Solution, k: int) -> tuple[Array, Array, Array]:
     grasp_map, load = np.hstack(columns), np.concatenate(loads)
     weight = np.append(-held.model.inertias[1].mass * held.model.gravity.linear, np.zeros(3))
     load = load + np.linalg.pinv(grasp_map) @ (weight - grasp_map @ load)
-    own = load[-6:] if robot.grasp.moments else np.append(load[-3:], np.zeros(3))
+    own = load[first : first + 6] if robot.grasp.moments else np.append(load[first : first + 3], np.zeros(3))
     q, none = robot.q[[k]][:, robot.moving], np.zeros((1, int(robot.moving.sum())))
     still = agent_trajectory(
         agent_of(dense.scenario, robot.name, dense.urdfs), q, none, none, own[None, :3], own[None, 3:]

@@ -12,6 +12,8 @@ import numpy.typing as npt
 from liftopt.lab.robot.action_server import SPEED_RATIO
 from liftopt.lab.robot.dry_run import DryRun
 from liftopt.multibody.robots.sawyer import sawyer_limits
+from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import grasp_points
 from liftopt.solution.interpolation import linear
 
 Array = npt.NDArray[np.float64]
@@ -79,7 +81,7 @@ def summarised(run: DryRun, depth: float) -> Summary:
 
     Args:
         run: of the simulated arm.
-        depth: between the grasps of person and robot [m].
+        depth: from the robot's grasp to the middle of the others' [m].
     """
     end = float(run.trajectory.time[-1])
     lift, last = (run.time >= 0.0) & (run.time <= end + 1e-9), int(np.searchsorted(run.time, end - 1e-9))
@@ -114,8 +116,15 @@ def summarised(run: DryRun, depth: float) -> Summary:
     )
 
 
-def summary_text(summary: Summary) -> str:
-    """Return a summary as a plain text table and a few lines."""
+def reach_to_others(scenario: Scenario, robot: str) -> float:
+    """Return the distance from where a robot holds the object to the middle of where the others do [m]."""
+    points = {name: np.array(point) for name, point in grasp_points(scenario).items()}
+    own = points.pop(robot)
+    return float(np.linalg.norm(own - np.mean(list(points.values()), axis=0)))
+
+
+def summary_text(summary: Summary, followers: str = "The person's hand is") -> str:
+    """Return a summary as a plain text table and a few lines; ``followers`` are those whom the robot leads."""
     from rich.console import Console
     from rich.table import Table
 
@@ -135,7 +144,7 @@ def summary_text(summary: Summary) -> str:
     if summary.delay is not None:
         lines.append(f"The arm is {summary.delay:.2f} s late.")
     lines += [
-        f"The person's hand is led off by at most {1e3 * summary.hand_max:.0f} mm ({1e3 * summary.off_path:.0f} mm off "
+        f"{followers} led off by at most {1e3 * summary.hand_max:.0f} mm ({1e3 * summary.off_path:.0f} mm off "
         f"the planned path), {1e3 * summary.hand_at_end:.0f} mm at the end of the motion, "
         f"{1e3 * summary.hand_final:.0f} mm when the server is done.",
         f"If it kept to the plan instead, the object would tilt by {np.degrees(summary.tilt):.1f} deg.",

@@ -1,4 +1,4 @@
-"""The robot's part of a solved lift in the robot's own terms: joint names, signs, order, and a fixed rate."""
+"""A robot's part of a solved lift in the robot's own terms: joint names, signs, order, and a fixed rate."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import InputError
+from liftopt.lab.meant import the_robot
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.interpolation import motion_between
@@ -42,26 +43,27 @@ class JointTrajectory:
         return tuple(round(1e9 * float(t)) for t in self.time)
 
 
-def joint_trajectory(solution: Solution, rate: float = RATE) -> JointTrajectory:
-    """Return the robot's motion of a solution from its spline, at ``rate`` and at its end.
+def joint_trajectory(solution: Solution, rate: float = RATE, robot: str | None = None) -> JointTrajectory:
+    """Return a robot's motion of a solution from its spline, at ``rate`` and at its end.
 
     Args:
         solution: a solved lift.
         rate: points a second [Hz]; the last interval is shorter where the duration is no multiple.
+        robot: its name; None where there is only one.
 
     Raises:
-        InputError: the solution is not solved, or the rate is out of range.
+        InputError: the solution is not solved, the rate is out of range, or no robot is the one that is meant.
     """
     if not solution.solved:
         raise InputError("RESULT", solution.status, "must be a solved and verified lift to move a robot")
     rate = checked_number("--rate", rate, 10.0, 1000.0, "Hz")
     duration = float(solution.time[-1])
     time = np.append(np.arange(int(np.ceil(duration * rate - SHORTEST))) / rate, duration)
-    return JointTrajectory(JOINTS, time, *robot_motion(solution, time))
+    return JointTrajectory(JOINTS, time, *robot_motion(solution, time, robot))
 
 
-def robot_motion(solution: Solution, time: Array) -> tuple[Array, Array, Array]:
-    """Return position, velocity and acceleration (T, 7) of the robot's joints, in its own signs, at ``time`` (T,)."""
-    robot = solution.agents[1]
-    q, v, a = (JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.a))
+def robot_motion(solution: Solution, time: Array, robot: str | None = None) -> tuple[Array, Array, Array]:
+    """Return position, velocity and acceleration (T, 7) of a robot's joints, in its own signs, at ``time`` (T,)."""
+    arm = the_robot(solution, robot)
+    q, v, a = (JOINT_SIGNS * rows[:, arm.moving] for rows in (arm.q, arm.v, arm.a))
     return motion_between(solution.time, q, v, a, time)

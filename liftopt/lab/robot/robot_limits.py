@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
+from liftopt.lab.meant import the_robot
 from liftopt.lab.robot.action_server import PATH_TOLERANCE, Mode, server_curve
 from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory, robot_motion
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS, sawyer_limits
@@ -38,15 +39,19 @@ STEP = 1e-2  # [rad/s^2]: less is none
 FIX = "solve again with a longer duration or more solver.intervals"
 
 
-def check_limits(solution: Solution) -> None:
-    """Check position, velocity and torque of the robot between the knots too, against its own limits.
+def check_limits(solution: Solution, robot: str | None = None) -> None:
+    """Check position, velocity and torque of a robot between the knots too, against its own limits.
+
+    Args:
+        solution: a solved lift.
+        robot: its name; None where there is only one.
 
     Raises:
         InputError: a limit is passed; it names the joint, the time and by how much.
     """
     dense = between_knots(solution)
-    time, robot = dense.time, dense.agents[1]
-    q, v, tau = (JOINT_SIGNS * rows[:, robot.moving] for rows in (robot.q, robot.v, robot.tau))
+    time, arm = dense.time, the_robot(dense, robot)
+    q, v, tau = (JOINT_SIGNS * rows[:, arm.moving] for rows in (arm.q, arm.v, arm.tau))
     for found in (
         _excess("is at", q, _ends(), time, "rad"),
         _excess("turns at", v, _speeds(), time, "rad/s"),
@@ -56,13 +61,14 @@ def check_limits(solution: Solution) -> None:
             raise InputError("RESULT", NO_VALUE, f"{found}: {FIX}")
 
 
-def check_server(solution: Solution, trajectory: JointTrajectory, rate: float) -> float:
+def check_server(solution: Solution, trajectory: JointTrajectory, rate: float, robot: str | None = None) -> float:
     """Check what the server commands between the points, and return how far it leaves the plan, the most [rad].
 
     Args:
         solution: a solved lift.
         trajectory: its motion at ``rate``.
         rate: points a second [Hz].
+        robot: its name; None where there is only one.
 
     Raises:
         InputError: it passes a limit of position or speed; it names the joint, the time, by how much, and a rate at
@@ -70,12 +76,12 @@ def check_server(solution: Solution, trajectory: JointTrajectory, rate: float) -
     """
     found = _server_excess(trajectory)
     if found:
-        enough = (one for one in RATES if one > rate and not _server_excess(joint_trajectory(solution, one)))
+        enough = (one for one in RATES if one > rate and not _server_excess(joint_trajectory(solution, one, robot)))
         better = next(enough, None)
         fix = FIX if better is None else f"take --rate {better:g}"
         raise InputError("--rate", rate, f"on the action server's curve through these points {found}: {fix}")
     time, value, _ = server_curve(trajectory).sampled(BETWEEN)
-    return float(np.abs(value[:, : len(JOINTS)] - robot_motion(solution, time)[0]).max())
+    return float(np.abs(value[:, : len(JOINTS)] - robot_motion(solution, time, robot)[0]).max())
 
 
 def check_motion(trajectory: JointTrajectory) -> None:

@@ -21,9 +21,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from liftopt.lab.meant import the_robot
 from liftopt.multibody.mujoco_model import import_mujoco, spec_of
-from liftopt.multibody.robots.sawyer import MOVING, NAME, VIRTUAL
-from liftopt.multibody.urdf import joint_name
 from liftopt.solution.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -41,22 +40,23 @@ NONE = np.zeros(3)
 class SimulatedArm:
     """The arm at one moment; ``advance`` takes it on."""
 
-    def __init__(self, solution: Solution, friction: Array, stiff: bool) -> None:
+    def __init__(self, solution: Solution, friction: Array, stiff: bool, robot: str | None = None) -> None:
         """Build the arm.
 
         Args:
             solution: whose robot it is.
             friction: (7,) how much of FRICTION and VISCOUS there is.
             stiff: whether the servo is on; without it the arm follows torques alone.
+            robot: its name; None where there is only one.
 
         Raises:
-            InputError: MuJoCo is not installed, or too old.
+            InputError: MuJoCo is not installed, or too old, or no robot is the one that is meant.
         """
         self._mujoco = import_mujoco()
-        moving = [joint_name(NAME, row) for row in MOVING]
-        spec = spec_of([solution.urdfs[NAME]], [joint_name(NAME, row) for row in VIRTUAL])
-        limits = solution.agents[1].limits
-        for j, name in enumerate(moving):
+        arm = the_robot(solution, robot)
+        locked = [name for name, moves in zip(arm.joint_names, arm.moving, strict=True) if not moves]
+        spec, limits = spec_of([solution.urdfs[arm.name]], locked), arm.limits
+        for j, name in enumerate(arm.moving_joints):
             servo = spec.add_actuator(name=name, target=name, trntype=self._mujoco.mjtTrn.mjTRN_JOINT)
             servo.gainprm[0], servo.biastype = 1.0, self._mujoco.mjtBias.mjBIAS_AFFINE
             servo.biasprm[1], servo.biasprm[2] = -STIFFNESS[j] * stiff, -DAMPING[j] * stiff
@@ -67,7 +67,7 @@ class SimulatedArm:
         self._model = spec.compile()
         self._model.dof_damping[:], self._model.dof_frictionloss[:] = VISCOUS * friction, FRICTION * friction
         self._data = self._mujoco.MjData(self._model)
-        self._tip = self._model.body(f"{NAME}_grasp").id
+        self._tip = self._model.body(f"{arm.name}_grasp").id
         self._stiff = float(stiff)
         self.torque = np.zeros(7)
         self.reference = np.zeros(7)

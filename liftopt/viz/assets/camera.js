@@ -11,17 +11,8 @@ function make_camera(viewer, data, element) {
   // The scene is turned to Y up: world (x, y, z) stands at (x, z, -y).
   const turned = ([x, y, z]) => [x, z, -y];
 
-  // What each preset shows, from which side (world axes: the person looks along X, Z is up), and what it says of itself.
-  const several = data.lifts.some((lift) => lift.head[1] !== data.lifts[0].head[1]);
-  const views = {
-    "three-quarter": { box: "all", from: [0.5, -1, several ? 0.55 : 0.3], title: "from the person's right and ahead" },
-    side: { box: "all", from: [0, -1, 0.02], title: "from the person's right" },
-    front: { box: "human", from: [1, 0, 0.04], title: "straight at the person's face, through the robot", through: true },
-    top: { box: "all", from: [0, -0.001, 1], title: "from above" },
-    person: { box: "human", from: [0.75, -1, 0.15], title: "the person, from head to foot" },
-    robot: { box: "robot", from: [-0.45, -1, 0.2], title: "the robot, from head to foot" },
-    hands: { box: "hands", from: [-0.1, -1, 0.35], title: "hands, gripper and object" },
-  };
+  // What each preset shows, from which side, and what it says of itself.
+  const views = Object.fromEntries(data.views.map((view) => [view.name, view]));
   const presets = Object.keys(views);
   let chosen = null;
 
@@ -35,7 +26,7 @@ function make_camera(viewer, data, element) {
     const up = cross(from, right);
     const height = window.innerHeight, room = 0.04;
     // Names stand above heads, where these are near each other the one above the other.
-    const names = data.lifts.length < 2 ? 0 : 50;
+    const names = data.labels.length ? 50 : 0;
     const top = Math.min(element("top").getBoundingClientRect().bottom + names, 0.45 * height);
     const bottom = Math.min(height - element("bar").getBoundingClientRect().top, 0.3 * height);
     const tall = Math.tan((camera.fov * Math.PI) / 360), wide = tall * camera.aspect;
@@ -63,18 +54,19 @@ function make_camera(viewer, data, element) {
     return [sum(sum(middle, right, across(far).middle), up, along(far).middle), far];
   }
 
-  // Make the robots see-through, or solid again.
-  function see_through(on) {
+  // Make everything see-through but some bodies; without these, all is solid.
+  function see_through(solid) {
     for (const lift of data.lifts) {
       const bodies = viewer.scene_tree.find([...lift.root.split("/").filter((part) => part), "body"]);
       for (const [name, body] of Object.entries(bodies.children)) {
-        if (!name.startsWith("robot") && name !== "ground") continue;
         body.object.traverse((object) => {
           if (!object.isMesh) return;
           const material = object.material;
           const own = (material.userData.own ??= { opacity: material.opacity, transparent: material.transparent });
           Object.assign(material, own, { depthWrite: !own.transparent });
-          if (on) Object.assign(material, { opacity: 0.15 * own.opacity, transparent: true, depthWrite: false });
+          if (solid && !solid.includes(name)) {
+            Object.assign(material, { opacity: 0.15 * own.opacity, transparent: true, depthWrite: false });
+          }
           material.needsUpdate = true;
         });
       }
@@ -87,23 +79,26 @@ function make_camera(viewer, data, element) {
 
   function look(name) {
     chosen = name;
-    const from = unit(views[name].from);
-    const [target, distance] = fit(data.sight[views[name].box], from);
+    const from = unit(views[name].side);
+    const [target, distance] = fit(views[name].box, from);
     camera.position.set(...turned(sum(target, from, distance)));
     controls.target.set(...turned(target));
     controls.update();
-    see_through(Boolean(views[name].through));
+    see_through(views[name].solid);
     viewer.set_dirty();
     press(name);
     place_names();
   }
 
-  // Names stand above the heads; where two would cover each other, the later one goes higher.
+  // Names stand above the heads; where two would cover each other, the later one goes higher, and none lies half under
+  // a panel.
   function place_names() {
+    if (!data.labels.length) return;
     camera.updateMatrixWorld();
     const placed = [];
+    const panels = ["facts", "views", "bar"].map((id) => element(id).getBoundingClientRect());
     [...element("names").children].forEach((name, i) => {
-      const at = new MeshCat.THREE.Vector3(...turned(data.lifts[i].head)).project(camera);
+      const at = new MeshCat.THREE.Vector3(...turned(data.labels[i].at)).project(camera);
       const box = { width: name.offsetWidth, height: name.offsetHeight };
       const middle = ((at.x + 1) / 2) * window.innerWidth;
       // Near the edge it stays whole; a head that is out of the picture takes its name along.
@@ -115,7 +110,9 @@ function make_camera(viewer, data, element) {
         && Math.abs(other.top - box.top) < box.height + 2;
       for (let other; (other = placed.find(covers)); ) box.top = other.top - box.height - 3;
       placed.push(box);
-      name.style.visibility = at.z < 1 ? "visible" : "hidden";
+      const under = panels.some((panel) => panel.left < box.left + box.width && box.left < panel.right
+        && panel.top < box.top + box.height && box.top < panel.bottom);
+      name.style.visibility = at.z < 1 && !under ? "visible" : "hidden";
       name.style.transform = `translate(${box.left.toFixed(1)}px, ${box.top.toFixed(1)}px)`;
     });
   }

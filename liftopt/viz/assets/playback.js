@@ -40,7 +40,7 @@
     viewer.scene.traverse((object) => {
       if (object.isMesh) object.receiveShadow = object.parent.name === "floor";
       if (!object.isDirectionalLight) return;
-      const reach = 2.2 + Math.hypot(...data.sight.all[1]) / 2;
+      const reach = 2.2 + Math.max(...data.views[0].box.map((corner) => Math.hypot(...corner))) / 2;
       Object.assign(object.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, far: 20 });
       object.shadow.mapSize.set(1024, 1024);
       object.shadow.bias = -0.002;
@@ -99,7 +99,7 @@
   }
 
   // ---- what is written beside the picture -----------------------------------------------------------------------
-  const colours = { human: "#0573b3", robot: "#e67300", table: "#c7995f" };
+  const object_colour = "#c7995f";
   function add(parent, kind, text, id) {
     const child = document.createElement(kind);
     child.textContent = text;
@@ -121,9 +121,11 @@
     const head = add(heads, "th", called(lift));
     if (data.lifts.length < 2) return;
     chip(head, lift.colour);
-    const name = add(element("names"), "div", called(lift));
+  });
+  data.labels.forEach((label) => {
+    const name = add(element("names"), "div", label.text);
     name.className = "name";
-    chip(name, lift.colour);
+    chip(name, label.colour);
   });
   function row(colour, text, key) {
     const line = add(table, "tr", "");
@@ -134,13 +136,13 @@
     name.prepend(mark);
     data.lifts.forEach((lift, i) => add(line, "td", "", `${key}-${i}`));
   }
-  Object.keys(data.lifts[0].force).forEach((who) => row(colours[who], `force of the ${who}`, `force-${who}`));
-  row(colours.table, "height of the table's centre", "height");
+  data.agents.forEach((agent) => row(agent.colour, `force of ${agent.who}`, `force-${agent.name}`));
+  row(object_colour, `height of the ${data.object}'s centre`, "height");
   data.lifts.filter((lift) => !lift.solved).forEach((lift) => {
     add(element("facts"), "p", `${lift.name} is not a verified solution: ${lift.status}`).className = "bad";
   });
   const scale = document.createElement("small");
-  scale.textContent = `arrows: force of each hand on the table, 10 N is ${(1000 * data.metres_per_newton).toFixed(0)} cm`;
+  scale.textContent = `arrows: force of each hand on the ${data.object}, 10 N is ${(1000 * data.metres_per_newton).toFixed(0)} cm`;
   element("facts").append(scale);
 
   // ---- camera and names -----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The Pareto front of human against robot effort as a figure."""
+"""The Pareto front of two efforts as a figure."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
-from liftopt.studies.pareto import Front, Point, ratio_text
+from liftopt.studies.pareto import Front, Point, ratio_text, who_of
 from liftopt.viz.plots_labels import label_points
 from liftopt.viz.plots_style import BLUE, FAINT, INK, ORANGE, WIDTH
 
@@ -19,24 +19,26 @@ def pareto_figure(front: Front) -> Figure:
     figure = Figure(figsize=(WIDTH, HEIGHT))
     figure.subplots_adjust(left=0.1, right=0.97, top=0.93, bottom=0.12)
     axes = figure.subplots()
-    human, robot = zip(*(point.efforts for point in front.points), strict=True)
-    axes.plot(human, robot, color=BLUE, marker="o", markerfacecolor="white", markeredgewidth=1.3, zorder=3)
+    one, other = (who_of(front, name) for name in front.between)
+    ours, theirs = zip(*(point.efforts for point in front.points), strict=True)
+    axes.plot(ours, theirs, color=BLUE, marker="o", markerfacecolor="white", markeredgewidth=1.3, zorder=3)
     if front.dominated:
         axes.plot(
             *zip(*(point.efforts for point in front.dominated), strict=True),
             color=FAINT, linestyle="none", marker="x", label="beaten in both efforts",
         )  # fmt: skip
-    now = next(agent.weight for agent in front.scenario.agents.values())
+    now = front.scenario.agents[front.between[0]].weight
     own = [p for p in front.points if abs(p.weights[0] - now) <= 1e-9 * (1 + now)]
     for point in own:
         axes.plot(
             *point.efforts, color=ORANGE, linestyle="none", marker="o", markersize=8, zorder=4,
             label="weights of the scenario",
         )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel="effort of the person, ∫ Σ τ² dt [N² m² s]")
-    axes.set_ylabel("effort of the robot, ∫ Σ τ² dt [N² m² s]")
+    axes.set(xscale="log", yscale="log", xlabel=f"effort of {one.called}, ∫ Σ τ² dt [N² m² s]")
+    axes.set_ylabel(f"effort of {other.called}, ∫ Σ τ² dt [N² m² s]")
     axes.set_title(
-        f"{front.scenario.name}: who works more. At the points: weights person : robot, load the person bears"
+        f"{front.scenario.name}: who works more. At the points: weights {one.label} : {other.label}, load {one.called} "
+        "bears"
     )
     axes.margins(x=0.14, y=0.1)
     for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):

@@ -1,0 +1,81 @@
+"""How somebody who lifts is told: by what they are, and by name where there are several of the kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+from liftopt.solution.finding import PERSON, ROBOT
+
+SUBJECTS = {"person": PERSON, "robot": ROBOT}
+HANDS = {PERSON: "hand", ROBOT: "gripper"}
+
+
+class Named(Protocol):
+    """Anything that has a name and a kind: an agent, or its trajectory."""
+
+    @property
+    def name(self) -> str:
+        """Of the agent."""
+
+    @property
+    def kind(self) -> str:
+        """``"person"`` or ``"robot"``."""
+
+
+@dataclass(frozen=True)
+class Who:
+    """One who lifts, in words.
+
+    Attributes:
+        subject: of the codes, ``"person"`` or ``"robot"``.
+        name: of the agent.
+        is_alone: whether nobody else is of the kind.
+    """
+
+    subject: str
+    name: str
+    is_alone: bool
+
+    @property
+    def the(self) -> str:
+        """``"the person"``, ``"the person anna"``."""
+        return f"the {self.told}"
+
+    @property
+    def told(self) -> str:
+        """``"person"``, ``"person anna"``."""
+        return self.subject if self.is_alone else f"{self.subject} {self.name}"
+
+    @property
+    def called(self) -> str:
+        """``"the person"``, ``"anna"``."""
+        return self.the if self.is_alone else self.name
+
+    @property
+    def label(self) -> str:
+        """Of a column: ``"person"``, ``"anna"``."""
+        return self.subject if self.is_alone else self.name
+
+    @property
+    def of(self) -> str:
+        """What follows a word that does not say whose it is: nothing, or ``" of anna"``."""
+        return "" if self.is_alone else f" of {self.name}"
+
+    @property
+    def hand(self) -> str:
+        """``"hand"`` or ``"gripper"``."""
+        return HANDS[self.subject]
+
+
+def who_is(agent: Named, agents: Iterable[Named]) -> Who:
+    """Return how an agent among ``agents`` is told."""
+    same = sum(other.kind == agent.kind for other in agents)
+    return Who(SUBJECTS[agent.kind], agent.name, same == 1)
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return ``"anna"``, ``"anna and ben"``, ``"anna, ben and left"``."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,0 +1,60 @@
+"""Who bears what through the grasps: parts of the load, and forces that only work against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.multibody.trajectory import AgentTrajectory, cross
+
+Array = npt.NDArray[np.float64]
+FREE_FALL = 1e-3  # N; below this the vertical load is too small to be shared out
+
+
+def shares(agents: Sequence[AgentTrajectory]) -> Array:
+    """Return each agent's part (agents, K) of the vertical grasp force; NaN where there is no load to share."""
+    vertical = np.stack([agent.grasp_force[:, 2] for agent in agents])
+    load = vertical.sum(axis=0)
+    part = np.full_like(vertical, np.nan)
+    np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
+    return part
+
+
+def squeeze(agents: Sequence[AgentTrajectory], name: str | None = None) -> Array:
+    """Return the part (K,) of the grasp forces that cancels [N]; positive presses the object together.
+
+    Of two hands it lies along the line between them. Of more it is what of the forces the grasp map takes to no force
+    and no moment on the object, their internal part (Kerr & Roth, 1986, Int J Robotics Research 4(4):3-17); a hand's is
+    positive towards the middle of the grasps.
+
+    Args:
+        agents: all that hold the object, two or more.
+        name: whose; None takes the largest at every time. With two hands both have the same.
+    """
+    if len(agents) == 2:
+        first, second = agents
+        line = second.grasp_position - first.grasp_position
+        line = line / np.linalg.norm(line, axis=1, keepdims=True)
+        return np.asarray(0.5 * np.einsum("ki,ki->k", first.grasp_force - second.grasp_force, line))
+    inner = internal_forces(agents)
+    points = np.stack([agent.grasp_position for agent in agents])
+    inward = np.einsum("aki,aki->ak", inner, points.mean(axis=0) - points)
+    size = np.copysign(np.linalg.norm(inner, axis=2), inward)
+    row = np.argmax(np.abs(size), axis=0) if name is None else [agent.name for agent in agents].index(name)
+    return np.asarray(size[row, np.arange(size.shape[1])])
+
+
+def internal_forces(agents: Sequence[AgentTrajectory]) -> Array:
+    """Return the part (agents, K, 3) of the grasp forces that moves nothing: no force and no moment on the object."""
+    force = np.stack([agent.grasp_force for agent in agents], axis=1)
+    point = np.stack([agent.grasp_position for agent in agents], axis=1)
+    grasp_map = np.zeros((len(force), 6, 3 * len(agents)))
+    for i in range(len(agents)):
+        lever = point[:, i] - point.mean(axis=1)
+        grasp_map[:, :3, 3 * i : 3 * i + 3] = np.eye(3)
+        grasp_map[:, 3:, 3 * i : 3 * i + 3] = cross(lever[:, None, :], np.eye(3)).swapaxes(1, 2)
+    load = force.reshape(len(force), -1, 1)
+    inner = load - np.linalg.pinv(grasp_map) @ (grasp_map @ load)
+    return np.asarray(inner.reshape(force.shape).swapaxes(0, 1))

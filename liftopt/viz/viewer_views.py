@@ -1,0 +1,157 @@
+"""What the viewer's camera can look at: presets for the lift as a whole, for every agent, and for the hands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.assessment.who import who_is
+from liftopt.ergonomics.lift import subject_in
+from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.viz.scene import Cast
+
+Array = npt.NDArray[np.float64]
+Box = list[list[float]]
+# Around joints: what of a person, a robot and the hands is in view [m].
+BODY, ROBOT, HANDS = 0.25, 0.05, 0.18
+# A robot's pedestal ahead of its base, behind it and to its sides, and its head above it [m].
+AHEAD, BEHIND, ASIDE, HEAD = 0.2, 0.5, 0.35, 0.65
+# From where an agent is seen in its own preset: ahead of it, to its left, up.
+OWN = {"person": (0.75, -1.0, 0.15), "robot": (0.45, 1.0, 0.2)}
+CLEARER = 0.1  # rad: as much more room on the other side is worth going there
+WHOLE = ("three-quarter", "side", "front", "top", "hands")
+
+
+@dataclass(frozen=True)
+class View:
+    """One preset of the camera.
+
+    Attributes:
+        name: on its button.
+        title: what it shows, in words.
+        box: lowest and highest corner of what is in view, world axes [m].
+        side: (3,) from which side, world axes.
+        solid: bodies that stay solid while everything else is see-through; None where all is solid.
+    """
+
+    name: str
+    title: str
+    box: Box
+    side: list[float]
+    solid: list[str] | None = None
+
+    def plain(self) -> dict[str, object]:
+        """Return it ready for JSON."""
+        return asdict(self)
+
+
+def views_of(casts: Sequence[Cast]) -> list[View]:
+    """Return the presets for one lift, or for two that are shown together."""
+    agents = agents_in(casts)
+    boxes = {agent.name: _agent_box(casts, agent) for agent in agents}
+    whole = _plain(np.vstack(list(boxes.values())))
+    points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
+    first = next((agent for agent in agents if agent.kind == "person"), agents[0])
+    aside = any(cast.offset != casts[0].offset for cast in casts)
+    whose = f"{who_is(first, agents).called}'s"
+    views = [
+        View(
+            "three-quarter",
+            f"from {whose} right and ahead",
+            whole,
+            _from(casts, first, (0.5, -1.0, 0.55 if aside else 0.3)),
+        ),
+        View("side", f"from {whose} right", whole, _from(casts, first, (0.0, -1.0, 0.02))),
+    ]
+    if first.kind == "person":
+        through = "the robot" if [one.kind for one in agents if one is not first] == ["robot"] else "everybody else"
+        bodies = {
+            body for cast in casts for body in (*cast.playback.joints.get(first.name, ()), cast.solution.object.name)
+        }
+        views.append(
+            View(
+                "front",
+                f"straight at {whose} face, through {through}",
+                _plain(boxes[first.name]),
+                _from(casts, first, (1.0, 0.0, 0.04)),
+                sorted(bodies),
+            )
+        )
+    views.append(View("top", "from above", whole, _from(casts, first, (0.0, -0.001, 1.0))))
+    for agent in agents:
+        button = agent.kind if who_is(agent, agents).is_alone else agent.name
+        views.append(
+            View(
+                button if button not in WHOLE else f"agent {button}",
+                f"{who_is(agent, agents).called}, from head to foot",
+                _plain(boxes[agent.name]),
+                _clear(casts, agent, _from(casts, agent, OWN[agent.kind])),
+            )
+        )
+    held = "hands, gripper and object" if any(agent.kind == "robot" for agent in agents) else "hands and object"
+    return [*views, View("hands", held, _plain(np.vstack(points), HANDS), _from(casts, first, (-0.1, -1.0, 0.35)))]
+
+
+def agents_in(casts: Sequence[Cast]) -> tuple[AgentTrajectory, ...]:
+    """Return the agents of all lifts, one of each name."""
+    named = {agent.name: agent for cast in reversed(casts) for agent in cast.solution.agents}
+    order = dict.fromkeys(agent.name for cast in casts for agent in cast.solution.agents)
+    return tuple(named[name] for name in order)
+
+
+def head_of(cast: Cast, agent: AgentTrajectory) -> Array:
+    """Return the top of an agent's head (3,), in the world, as it stands upright [m]."""
+    person = agent.kind == "person"
+    up = subject_in(cast.solution, agent.name).stature if person else HEAD
+    head = cast.playback.bases[agent.name] @ (0.0, 0.0, up, 1.0)
+    return np.asarray(head[:3] + cast.offset)
+
+
+def _clear(casts: Sequence[Cast], agent: AgentTrajectory, side: list[float]) -> list[float]:
+    """Return the side (3,) that an agent is seen from, or its mirror image where others stand less in the way."""
+    cast = next(cast for cast in casts if agent.name in cast.playback.bases)
+    base = cast.playback.bases[agent.name]
+    others = [other[:2, 3] - base[:2, 3] for name, other in cast.playback.bases.items() if name != agent.name]
+    mirrored: list[float] = (base[:3, :3] @ (base[:3, :3].T @ side * (1.0, -1.0, 1.0))).tolist()
+    one, other = (min((_angle(np.array(at[:2]), way) for way in others), default=0.0) for at in (side, mirrored))
+    return mirrored if other > one + CLEARER else side
+
+
+def _angle(a: Array, b: Array) -> float:
+    """Return the angle between two directions (2,) [rad]."""
+    return float(abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
+
+
+def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
+    """Return corners (2, 3) around an agent in all lifts: where it stands, its joints and its hand."""
+    points = []
+    for cast in casts:
+        playback = cast.playback
+        if agent.name not in playback.bases:
+            continue
+        world_base, top = playback.bases[agent.name], float((head_of(cast, agent) - cast.offset)[2])
+        ahead, behind, aside = (BODY, BODY, BODY) if agent.kind == "person" else (AHEAD, BEHIND, ASIDE)
+        for x in (-behind, ahead):
+            for y in (-aside, aside):
+                points += [(world_base @ (x, y, 0.0, 1.0))[:3] * (1.0, 1.0, 0.0) + cast.offset]
+                points += [points[-1] + (0.0, 0.0, top)]
+        points += [*(playback.forces[agent.name].point + cast.offset)]
+        points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
+    room = 0.0 if agent.kind == "person" else ROBOT
+    return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
+
+
+def _plain(points: Array, room: float = 0.0) -> Box:
+    """Return lowest and highest corner of what holds points (n, 3), with some room, ready for JSON."""
+    corners: Box = np.round([points.min(axis=0) - room, points.max(axis=0) + room], 3).tolist()
+    return corners
+
+
+def _from(casts: Sequence[Cast], agent: AgentTrajectory, direction: tuple[float, float, float]) -> list[float]:
+    """Return in the world a direction that is given as an agent sees it: ahead, to its left, up."""
+    cast = next(cast for cast in casts if agent.name in cast.playback.bases)
+    side: list[float] = (cast.playback.bases[agent.name][:3, :3] @ direction).tolist()
+    return side

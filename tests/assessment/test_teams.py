@@ -1,0 +1,130 @@
+"""Findings on everybody who lifts, told by name; oracles: each one's own trajectory, and who is in the scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.assessment import robot
+from liftopt.assessment.assess import assess
+from liftopt.assessment.text import details_text, verdict_text
+from liftopt.solution.interpolation import between_knots
+from liftopt.solution.solution import Solution
+
+GRAVITY = 9.81
+
+
+@pytest.fixture(scope="module")
+def people(team_solution: Callable[[str], Any]) -> Solution:
+    solution: Solution = team_solution("two_people").solution
+    return solution
+
+
+@pytest.fixture(scope="module")
+def robots(team_solution: Callable[[str], Any]) -> Solution:
+    solution: Solution = team_solution("two_robots").solution
+    return solution
+
+
+def _verdicts(solution: Solution) -> dict[str | None, str]:
+    return {verdict.agent: verdict.code for verdict in solution.assessment.verdicts}
+
+
+def test_everybody_has_a_verdict_and_nobody_else(people: Solution, robots: Solution) -> None:
+    assert _verdicts(people) == {"anna": "verdict.person", "ben": "verdict.person", None: "verdict.mathematics"}
+    assert _verdicts(robots) == {
+        "human": "verdict.person", "near": "verdict.robot", "far": "verdict.robot", None: "verdict.mathematics",
+    }  # fmt: skip
+    with pytest.raises(KeyError):
+        people.assessment.verdict("robot")
+    assert robots.assessment.verdict("robot", "far").agent == "far"
+
+
+def test_what_is_found_is_everybodys_own(people: Solution, robots: Solution) -> None:
+    """Peak of the grasp force, share of the load and load of the lifting guide, from their own trajectories."""
+    for solution in (people, robots):
+        fine = between_knots(solution)
+        total = sum(agent.grasp_force[:, 2] for agent in fine.agents)
+        for agent in fine.agents:
+            found = {finding.code: finding for finding in solution.assessment.about(agent.kind, agent.name)}
+            peak = np.linalg.norm(agent.grasp_force, axis=1).max()
+            assert found[f"{agent.kind}.grasp_force"].value == pytest.approx(peak, rel=1e-12)
+            if agent.kind == "robot":
+                carried = 0.4 + (agent.grasp_force[:, 2] / GRAVITY).max()
+                assert found["robot.payload"].value == pytest.approx(carried, rel=1e-12)
+                continue
+            assert found["person.acgih"].value == pytest.approx((agent.grasp_force[:, 2] / GRAVITY).max(), rel=1e-12)
+            assert found["person.load_share"].value == pytest.approx((agent.grasp_force[:, 2] / total).max(), rel=1e-12)
+
+
+def test_messages_name_whose_they_are_where_there_are_several(people: Solution, robots: Solution) -> None:
+    for solution in (people, robots):
+        for agent in solution.agents:
+            several = sum(other.kind == agent.kind for other in solution.agents) > 1
+            told = [
+                *solution.assessment.about(agent.kind, agent.name),
+                solution.assessment.verdict(agent.kind, agent.name),
+            ]
+            assert len(told) > 4
+            for finding in told:
+                if finding.code != "person.squeeze":  # it names all hands
+                    assert (agent.name in finding.message) == several, finding
+
+
+def test_the_terminal_tells_everybody_under_their_name(people: Solution, robots: Solution) -> None:
+    lines = verdict_text(people, None).splitlines()
+    assert lines[0] == "two_people: WARNING for the person anna, WARNING for the person ben"
+    assert "anna (female 1.62 m, 58 kg) and ben (male 1.82 m, 84 kg) lift 8 kg" in " ".join(lines)
+    assert {line for line in lines if line.startswith("Person")} == {"Person anna: WARNING", "Person ben: WARNING"}
+    assert "robot" not in " ".join(lines).lower()
+    text = verdict_text(robots, None)
+    for words in ("Person: WARNING", "Robot near: ", "Robot far: ", "human and near"):
+        assert words in text
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_hands_of_three_work_against_each_other(robots: Solution) -> None:
+    """A push of two against the third, put on top, is in the finding by as much."""
+    push = np.zeros((3, 3))
+    human, *others = robots.agents
+    along = [agent.grasp_position[0] - human.grasp_position[0] for agent in others]
+    for i, line in enumerate(along, start=1):  # along two sides of the triangle: it moves nothing
+        push[0] += 100.0 * line / np.linalg.norm(line)
+        push[i] -= 100.0 * line / np.linalg.norm(line)
+    pushed = tuple(
+        replace(agent, grasp_force=agent.grasp_force + one) for agent, one in zip(robots.agents, push, strict=True)
+    )
+    before = next(one for one in robots.assessment if one.code == "person.squeeze")
+    after = next(one for one in assess(replace(robots, agents=pushed)) if one.code == "person.squeeze")
+    assert before.value is not None
+    assert after.value == pytest.approx(before.value + np.linalg.norm(push[0]), rel=0.02)
+    assert after.severity == "warning"
+    assert after.message.startswith("The hand of the person and those of near and far press the plank together")
+
+
+def test_a_robot_whose_payload_nobody_knows_is_told_so(robots: Solution, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robot, "DATA", {})
+    found = [finding for finding in assess(robots) if finding.code == "robot.payload"]
+    assert [finding.agent for finding in found] == ["near", "far"]
+    for finding in found:
+        assert (finding.severity, finding.limit) == ("info", None)
+        assert "payload is not known" in finding.message
+        assert f"{finding.value:.2f} kg" in finding.message
+
+
+def test_clearance_speaks_of_those_who_are_there(people: Solution, robots: Solution) -> None:
+    told = [solution.assessment[-1].message for solution in (people, robots)]
+    assert told[0].endswith("People and object may touch or overlap on the way.")
+    assert "Person, robots and object may touch" in told[1]
+
+
+def test_of_what_is_no_solution_nobody_is_assessed(people: Solution) -> None:
+    assessment = assess(replace(people, outcome="time limit reached"))
+    assert {(one.agent, one.message) for one in assessment.verdicts if one.agent} == {
+        (name, f"The person {name} is not assessed: there is no lift.") for name in ("anna", "ben")
+    }
+    assert "The person ben is not assessed" in details_text(assessment)
