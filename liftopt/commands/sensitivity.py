@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,6 +12,7 @@ from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.scenario.model import Scenario
 from liftopt.storage.solved_scenario import scenario_or_solved
+from liftopt.types import Progress
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def add_sensitivity_parser(commands: Any) -> None:
     parser.set_defaults(run=telling(sensitivity))
 
 
-def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
+def sensitivity(args: argparse.Namespace, progress: Progress | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:
@@ -94,7 +94,7 @@ def study_dict(study: Study) -> dict[str, Any]:
     }
 
 
-def _polished(scenario: Scenario, progress: Callable[[str], None] | None) -> tuple[Candidate, SolverCache]:
+def _polished(scenario: Scenario, progress: Progress | None) -> tuple[Candidate, SolverCache]:
     """Return the best candidate, polished as far as the solver goes, and the cache it comes from."""
     from liftopt.control.replanning import Replanner
     from liftopt.search.cache import SolverCache

@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
@@ -24,8 +23,8 @@ from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, free
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TURNING = "grasp moments"
 
 

@@ -15,12 +15,11 @@ that demand is there on a coarse mesh already: the third witness.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.motion import Motion, motion_at
 from liftopt.collocation.problem import Problem, Team
@@ -34,8 +33,8 @@ from liftopt.crosscheck.instant import Coordinates
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array, Progress
 
-Array = npt.NDArray[np.float64]
 MESHES = (10, 20, 40, 80, 160)
 LIMIT_MESH = 20  # on which the limit is taken: on the default lift it is there to 3e-5
 CLOSER = 0.6  # of the distance is left, at most, on half the step
@@ -96,9 +95,7 @@ class MeshStudy:
         )
 
 
-def mesh_study(
-    solution: Solution, meshes: Sequence[int] = MESHES, progress: Callable[[str], None] | None = None
-) -> MeshStudy:
+def mesh_study(solution: Solution, meshes: Sequence[int] = MESHES, progress: Progress | None = None) -> MeshStudy:
     """Solve by both transcriptions on several meshes, each from the solution.
 
     Args:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.checks import FINER
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 def between_knots(solution: Solution) -> Solution:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 import pytest
 
@@ -23,8 +22,7 @@ from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 RATE = 100.0
 STANDING = 0.4  # s before and after a lift made up

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
@@ -20,8 +19,8 @@ from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.trajectory import GRAVITY
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 Made = Callable[..., RecordedLift]
 

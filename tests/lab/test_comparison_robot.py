@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 import pytest
 
@@ -19,10 +18,10 @@ from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosM
 from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
 pytest.importorskip("rosbags", reason="rosbags is not installed (it is in the extra 'lab')")
 
-Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 # The manufacturer's names; the head is among them, and the fourth joint turns the other way than in Table 3.
 NAMES = ["head_pan", *(f"right_j{i}" for i in range(7))]

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
@@ -21,8 +20,8 @@ from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Plan = tuple[Array, Array]
 RATE, BEGUN = 100.0, 1_000.0  # Hz; s on the recorder's clock when the recording begins
 ACTION = GOAL_TOPIC.removesuffix("/goal")

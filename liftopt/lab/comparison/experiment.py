@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
@@ -21,9 +20,8 @@ from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 from liftopt.viz.anatomy import ANATOMY, human_curves, robot_curves
-
-Array = npt.NDArray[np.float64]
 
 FACTOR = 10  # as the plots
 NO_FORCE = "none given"  # how a recorded lift says that its hand was taken as empty

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.lab.meant import the_robot
 from liftopt.lab.robot.simulated_arm import STEP
@@ -19,8 +18,8 @@ from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory, cros
 from liftopt.scenario.build import agent_of, object_of
 from liftopt.solution.interpolation import linear, resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 AHEAD = 0.1  # [s]: how far along the plan an arm is sought from where it was a tick before
 AT_ONCE = 1e-6  # [s] between rest and motion
 
