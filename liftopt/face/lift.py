@@ -37,7 +37,7 @@ class Solution(solution.Solution):
         return to_xarray(self)
 
     def save(self, folder: str | Path) -> Path:
-        """Write it into a folder, whole or not at all: solution.nc, and scenario.toml and models/*.urdf beside it.
+        """Write it into a folder, whole or not at all: ``solution.nc``, and beside it the scenario and the URDFs.
 
         What is no solution never replaces one: if there is one in the folder, it goes to ``unsolved`` within.
 

@@ -16,6 +16,7 @@ CIRCLE = 24  # points of a drawn circle
 VIEWS: dict[str, Array] = {
     "right": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),  # of the person: X to the right
     "front": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]),  # of the person: Y to the right
+    "behind": np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),  # the person: Y to the left
     "above": np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]),
 }
 
