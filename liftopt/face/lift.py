@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from liftopt.scenario.model import Scenario
 from liftopt.solution import solution
+from liftopt.types import Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,7 +62,7 @@ class Solution(solution.Solution):
         write_report(self, Path(html))
 
 
-def solve(scenario: Scenario, *, progress: Callable[[str], None] | None = None) -> Solution:
+def solve(scenario: Scenario, *, progress: Progress | None = None) -> Solution:
     """Return the best verified lift of several starts; of one that has none, ``status`` says why.
 
     Args:

@@ -13,9 +13,10 @@ from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lea
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.scenario.urdf_files import urdf_files
 
-# What results call otherwise: attributes objective_<agent>, and the sections beside the agents.
 OWN_PLACE = "give the object's own x, y and z"
-TAKEN = ("acceleration", "force", "limit", "error", "bar", "schema", "table")
+# Names that results have for something else: attributes objective_<agent>, variables grasp_<...>.
+TAKEN = ("acceleration", "force", "limit", "error", "bar", "grasp", "schema", "table")
+ELSEWHERE = "is the name of something else"
 
 
 def check(scenario: ScenarioFields) -> None:
@@ -37,11 +38,14 @@ def _check_names(scenario: ScenarioFields) -> None:
         if not NAME.fullmatch(name):
             raise InputError("agents", name[:60], f"the name of an agent must be {NAMES}")
         if name in taken:
-            raise InputError("agents", name, "is the name of something else; give the agent another one")
+            raise InputError("agents", name, f"{ELSEWHERE}; give the agent another one")
+    if scenario.object.name in {*TAKEN} - {"table"}:
+        raise InputError("object.name", scenario.object.name, f"{ELSEWHERE}; give the object another one")
     files = Counter(urdf_files(scenario).values())
     for name, file in urdf_files(scenario).items():
         if files[file] > 1 and name == file.removesuffix(".urdf"):
-            raise InputError("agents", name, f"has the file {file}, as another agent; give it another name")
+            key = "agents" if name in scenario.agents else "object.name"
+            raise InputError(key, name, f"the file {file} is another one's; give another name")
 
 
 def _check_grasps(scenario: ScenarioFields) -> None:

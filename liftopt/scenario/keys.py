@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from numbers import Integral, Real
 from typing import Any
 
 from liftopt.errors import NO_VALUE, InputError
@@ -131,7 +132,11 @@ def _value(text: str) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    return value.plain() if isinstance(value, Section) else value
+    if isinstance(value, Section):
+        return value.plain()
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return value
+    return int(value) if isinstance(value, Integral) else float(value)  # NumPy's too
 
 
 def _name_of_object(tables: Mapping[str, Any]) -> object:

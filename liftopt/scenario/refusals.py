@@ -35,6 +35,10 @@ def refusal(of: type[BaseModel], fault: Mapping[str, Any], values: Mapping[str, 
         return InputError(
             ".".join((*place[:2], place[3])), value, f"cannot stand beside the others; task.{place[1]} {PLACED_BY}"
         )
+    if kind == "extra_forbidden" and place[0] in DEFAULT_TEAM and AGENTS not in values:  # as in schema 1
+        return InputError(
+            place[0], NO_VALUE, f"unknown key; in schema 2 it is a table of an agent, [agents.{place[0]}]"
+        )
     if kind == "extra_forbidden":
         return _unknown(of, _without_tags(place), value, _kinds_in(values.get(AGENTS)))
     if place[:2] in ENDS and len(place) > 2:

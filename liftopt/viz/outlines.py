@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.spatial import ConvexHull
 
-from liftopt.viz.plots_style import Array
+from liftopt.types import Array
 
 CIRCLE = 24  # points of a drawn circle
 # World axes that point to the right, up and away from the reader, by where the reader stands.

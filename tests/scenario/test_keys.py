@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
@@ -49,6 +50,16 @@ def test_whole_sections_are_values_too() -> None:
     changed = DEFAULT.replace({"robot.tool": Tool(length=0.0, mass=0.0), "human": DEFAULT.first("person")})
     assert changed.value("robot.tool") == Tool(length=0.0, mass=0.0)
     assert changed.first("person") == DEFAULT.first("person")
+
+
+def test_numpys_numbers_are_numbers() -> None:
+    changed = DEFAULT.replace(
+        {"object.mass": np.float32(3.0), "solver.intervals": np.int64(12), "duration": np.int8(3)}
+    )
+    assert (changed.object.mass, changed.solver.intervals, changed.duration) == (3.0, 12, 3.0)
+    assert type(changed.solver.intervals) is int
+    with pytest.raises(InputError, match=r"solver\.intervals = 12\.5"):
+        DEFAULT.replace({"solver.intervals": np.float64(12.5)})
 
 
 def test_a_scenario_is_made_in_python_as_in_a_file() -> None:

@@ -52,6 +52,14 @@ def test_weights_go_to_the_agents() -> None:
         ({"schema": "1"}, "schema = '1': must be 2, or 1 in older files"),
         ({"schema": 1.0}, "schema = 1.0: must be 2, or 1 in older files"),
         ({}, "schema: is missing; must be 2"),
+        (
+            {"schema": 2, "duration": 2.0, "human": {"stature": 1.7}},
+            "human: unknown key; in schema 2 it is a table of an agent, [agents.human]",
+        ),
+        (
+            {"schema": 2, "duration": 2.0, "table": {"mass": 2.0}},
+            "table.mass = 2.0: unknown key; did you mean object.mass",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_by_its_key(tables: dict[str, object], said: str) -> None:

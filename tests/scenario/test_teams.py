@@ -120,6 +120,13 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
         ("agents.force={kind='robot', model='sawyer'}", "agents", "is the name of something else"),
         ("agents.two words={kind='robot', model='sawyer'}", "agents", "1 to 32 letters"),
         ("object.name=human", "agents", "is the name of something else"),
+        ("object.name=grasp", "object.name", "is the name of something else"),
+        ("object.name=sawyer", "object.name", "the file sawyer.urdf is another one's"),
+        (
+            "agents.human_arm={kind='person', stature=1.7, mass=70.0, sex='male', position=[0.5, 1]}",
+            "agents",
+            "the file human_arm.urdf is another one's",
+        ),
         ("object.name=a b", "object.name", "1 to 32 letters"),
         ("object.grasps={robbot=[0.2, 0.0, 0.0]}", "object.grasps.robbot", "did you mean robot"),
         ("object.grasps={robot=[0.2, 0.0]}", "object.grasps.robot", "a table of NAME = "),
@@ -127,6 +134,7 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
         ("task.start={height=0.9, human_distance=0.4, x=0.6}", "task.start.", "either height and human_distance"),
         ("task.start=3", "task.start", "height and human_distance, or x, y and z"),
         ("agents={}", "agents", "is empty"),
+        ("agents={anna={kind='robot', model='sawyer'}}", "anna.base.x", "only the two who face each other"),
         ("agents.human.kind=dog", "human.kind", '"person" or "robot"'),
         ("human=3", "human", "must be a section of an agent"),
         ("human.position=3", "human.position", "two numbers"),
@@ -150,3 +158,8 @@ def test_no_person_no_distance_from_feet(trio: Scenario) -> None:
     tables["task"]["start"] = {"height": 0.9, "human_distance": 0.4}
     with pytest.raises(InputError, match="counts from the feet of a person"):
         scenario_from_dict(tables)
+
+
+def test_an_agent_by_another_name_is_told_who_may_be_meant(two_people: Scenario) -> None:
+    with pytest.raises(InputError, match=r"^human\.stature = 1\.7: unknown key; did you mean anna\.stature"):
+        two_people.replace({"human.stature": 1.7})
