@@ -1,4 +1,4 @@
-"""Where the viewer's file comes from: liftopt's own folder, an installed meshcat, or one line that says how to get it."""
+"""Where the viewer's file comes from: liftopt's own folder, an installed meshcat, or one line that says what to do."""
 
 from __future__ import annotations
 
