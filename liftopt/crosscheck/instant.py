@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 OBJECT_SIZE, FORCE_SIZE = 6, 3
 
 

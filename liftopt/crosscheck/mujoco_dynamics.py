@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.mujoco_model import import_mujoco, joint_places, spec_of, states_of
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

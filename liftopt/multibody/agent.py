@@ -6,13 +6,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
-
-Array = npt.NDArray[np.float64]
-
+from liftopt.types import Array
 
 Kind = Literal["person", "robot"]
 KINDS: tuple[Kind, ...] = ("person", "robot")

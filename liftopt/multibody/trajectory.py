@@ -13,8 +13,8 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 GRAVITY = 9.81  # m/s^2, as in the models
 
 

@@ -10,8 +10,8 @@ from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
+from liftopt.types import Progress
 
-Progress = Callable[[str], None]
 FASTEST_FIRST = (BANDED, IPOPT)
 IPOPT_ITERATIONS = 200  # from each start, where it takes over from another solver
 MESH = ", N = "  # between the name of a start and the mesh its motion was taken to

@@ -13,19 +13,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.trajectory import GRAVITY, limit_share
 from liftopt.scenario.agents import Person
 from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
+from liftopt.types import Array
 
 if TYPE_CHECKING:
     from liftopt.multibody.trajectory import AgentTrajectory
     from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
 
 
 AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective

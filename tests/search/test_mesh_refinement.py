@@ -17,7 +17,8 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.commands.cli import main
 from liftopt.control.replanning import Replanner
-from liftopt.scenario.model import Refine, load_scenario
+from liftopt.scenario.model import load_scenario
+from liftopt.scenario.settings import Refine
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.mesh_accuracy import compared, distance, unmet

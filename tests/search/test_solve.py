@@ -79,7 +79,7 @@ def test_papers_own_problem_solves_and_is_verified(solved: Callable[..., Any]) -
 
 def test_an_agent_without_weight_takes_the_load_off_the_other(solved: Callable[..., Any]) -> None:
     free = {
-        who: solved("table5", f"objective.{who}_weight=0", "solver.starts=1").solution.objective_terms
+        who: solved("table5", f"{who}.weight=0", "solver.starts=1").solution.objective_terms
         for who in ("human", "robot")
     }
     assert free["robot"]["human"] < free["human"]["human"]
