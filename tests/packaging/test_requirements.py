@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from liftopt.viz.meshcat_files import LICENCES, MESHCAT, VIEWER
 
@@ -149,6 +151,19 @@ def test_only_laboratory_and_crosscheck_import_what_a_plain_install_has_not() ->
     for file in (ROOT / "liftopt").rglob("*.py"):
         if file.relative_to(ROOT / "liftopt").parts[0] not in ("lab", "crosscheck"):
             assert distributions(imported(file)) - PLAIN.keys() == set(), file
+
+
+def test_the_locked_versions_are_within_the_bounds() -> None:
+    """What contributors and the tests ask for stands there, and nothing but names and versions does."""
+    lines = (ROOT / "requirements/lock.txt").read_text(encoding="utf-8").splitlines()
+    pins = [line.split("==") for line in lines if not line.startswith("#")]
+    assert [pin for pin in pins if not (len(pin) == 2 and re.fullmatch(r"[\w.+]+", pin[1]))] == []
+    locked = {canonicalize_name(name): version for name, version in pins}
+    project = PROJECT["project"]
+    extras = project["optional-dependencies"]
+    for requirement in map(Requirement, [*project["dependencies"], *extras["test"], *extras["docs"]]):
+        if requirement.marker is None:
+            assert locked[canonicalize_name(requirement.name)] in requirement.specifier, requirement
 
 
 def test_the_installation_page_tells_what_every_package_is_for() -> None:
