@@ -23,7 +23,7 @@ OBJECT_SIZE, FORCE_SIZE = 6, 3
 
 @dataclass(frozen=True)
 class Coordinates:
-    """What moves: the agents' joints that are not pinned, then the object's coordinates that are not locked.
+    """What moves: the agents' joints that are not locked, then the object's coordinates that are not locked.
 
     Attributes:
         joints: number of moving joints of each agent.

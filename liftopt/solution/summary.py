@@ -49,7 +49,7 @@ def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[st
         "exit_status": 0 if solved else 3,
         "reason": None if solved else solution.status,
         "reasons": [asdict(reason) for reason in solution.reasons],
-        "remedies": [asdict(change) for change in solution.suggested_changes],
+        "suggested_changes": [asdict(change) for change in solution.suggested_changes],
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
         "files": [] if out is None else [str(out / name) for name in files],

@@ -111,7 +111,7 @@ def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Candid
     assert found is not None and found.best.solved
     best = found.best
     names = [record.name for record in session.records]
-    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh on 40, N = 40"]
+    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, without multipliers on 40, N = 40"]
     assert best.origin is coarse and len(found.others) == len({round(p.result.objective, 2) for p in found.others})
     x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
     cold = session.solvers(best.problem)[0].solve(x, deadline=NEVER, problem=best.problem, incumbent=best.result)
