@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 from scipy.interpolate import CubicSpline
 
@@ -16,8 +15,8 @@ from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import scenario_from_dict
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 GRAVITY = 9.81
 TASK = {"start": {"height": 0.8, "human_distance": 0.4}, "end": {"height": 1.15, "human_distance": 0.4}}
 TWO_PEOPLE = {

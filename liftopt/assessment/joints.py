@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.assessment.who import Who
 from liftopt.multibody.trajectory import AgentTrajectory, limit_share
 from liftopt.solution.finding import CAUTION, INFO, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
 
-Array = npt.NDArray[np.float64]
 Directions = Mapping[tuple[str, int], str]
 
 NEAR_LIMIT = 0.8  # share of a torque limit from which it is a caution

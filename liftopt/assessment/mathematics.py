@@ -33,7 +33,7 @@ def failure_findings(solution: Solution) -> Iterator[Finding]:
     for change in solution.suggested_changes:
         settings = setting(change)
         text = f"With {settings} it was solved and verified: {change.message}."
-        yield Finding(f"{MATHEMATICS}.remedy", INFO, f"possible with {settings}", text)
+        yield Finding(f"{MATHEMATICS}.suggested_change", INFO, f"possible with {settings}", text)
     yield from _notes(solution)
 
 
@@ -47,7 +47,7 @@ def mathematics_findings(solution: Solution) -> Iterator[Finding]:
 
 
 def setting(change: SuggestedChange) -> str:
-    """Return a remedy as keys of the scenario with their values, ``"task.standing_distance = 1.80"``."""
+    """Return a suggested change as keys of the scenario with their values, ``"task.standing_distance = 1.80"``."""
     return ", ".join(f"{key} = {value:.2f}" for key, value in zip(change.keys, change.values, strict=True))
 
 

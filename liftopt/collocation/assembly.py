@@ -18,13 +18,11 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.codegen.kernels import Kernel
 from liftopt.collocation.scatter import Pattern, hessian_pattern, jacobian_pattern
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

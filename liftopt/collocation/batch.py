@@ -14,8 +14,8 @@ import scipy.sparse as sp
 
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.scatter import Pattern, jacobian_pattern
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Knots a call: enough to hide what a call costs, few enough that the last one wastes little.
 CHUNK = 16
 

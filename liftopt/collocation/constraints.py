@@ -17,8 +17,8 @@ from liftopt.collocation.flat_hand import PUSH, flat_hand_rows
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
 from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 BALANCE_ROWS = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
 

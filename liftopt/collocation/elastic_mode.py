@@ -24,8 +24,8 @@ from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space: a broken limit can be put right by
 # someone stronger or slower, a grasp that does not hold cannot.
 CLOSURE_PRICE, SHARE_PRICE, WORKSPACE_PRICE = 1000.0, 10.0, 100.0

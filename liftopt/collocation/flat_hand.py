@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.multibody.agent import Grasp
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 PUSH = 2  # which component of the wrench
 
 

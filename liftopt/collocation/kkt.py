@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.collocation.kkt_wrench import add_agent_wrench, object_wrench_slopes
@@ -14,8 +13,8 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.trajectory import attitude, bearing, cross, free_flyer_state, object_trajectory, turned
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # The scale from which on large multipliers relax the test, s_max of Waechter and Biegler (2006), eq. 6.
 MULTIPLIER_SCALE = 100.0
 # A step along the imaginary axis gives a derivative without a difference, so it can be as small as this.

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.trajectory import attitude, bearing, cross, turned
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # A step along the imaginary axis gives a derivative without a difference, so it can be as small as this.
 STEP = 1e-30
 

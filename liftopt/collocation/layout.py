@@ -12,8 +12,8 @@ import scipy.sparse as sp
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
 from liftopt.multibody.agent import Grasp
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 OBJECT_SIZE = 6
 FORCE_SIZE = 3

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

@@ -22,15 +22,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.kkt import FirstOrder, first_order
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 LOOSE = 1e12  # slack over multiplier where there is no multiplier at all
 
 

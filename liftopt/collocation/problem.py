@@ -5,13 +5,11 @@ It knows no human, robot or table: another robot, a second person or a third age
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
 from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
@@ -28,8 +26,7 @@ from liftopt.collocation.wrench_dynamics import (
 )
 from liftopt.errors import ModelError
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array, Progress
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +49,7 @@ class Team:
     def of(
         agents: tuple[Agent, ...],
         lifted: LiftedObject,
-        progress: Callable[[str], None] | None = None,
+        progress: Progress | None = None,
         like: Team | None = None,
     ) -> Team:
         """Load or compile the kernels.

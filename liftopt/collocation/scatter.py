@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 Index = npt.NDArray[np.int64]
 
 

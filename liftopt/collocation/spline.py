@@ -15,7 +15,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 DEGREE = 3
 # Intervals of a mesh.
 FEWEST, FINEST = 6, 400

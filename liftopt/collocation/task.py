@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 OBJECT_COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 
 

@@ -8,14 +8,13 @@ solver takes fewer iterations than from the motion alone, and seldom goes to ano
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.constraints import Block
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.collocation.spline import Mesh, RestToRestSpline, interpolate_linear
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 SAMPLES = 8  # an interval of the finer of two meshes
 
 

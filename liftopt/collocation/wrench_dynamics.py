@@ -11,8 +11,6 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.collocation.dynamics import (
@@ -24,8 +22,8 @@ from liftopt.collocation.dynamics import (
     knot_functions,
     roll_pitch_yaw,
 )
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 WRENCH_SIZE = 6
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from liftopt.commands.export import add_goal_time, add_robot_name
 from liftopt.commands.terminal import telling
+from liftopt.types import Progress
 
 MODES = ("velocity", "position", "position_w_id", "torque")
 
@@ -39,7 +39,7 @@ def add_dry_run_parser(commands: Any) -> None:
     parser.set_defaults(run=telling(dry_run_text))
 
 
-def dry_run_text(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
+def dry_run_text(args: argparse.Namespace, progress: Progress | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:

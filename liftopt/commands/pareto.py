@@ -7,7 +7,6 @@ import csv
 import io
 import json
 import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from liftopt.commands.terminal import telling
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.atomic_file import write_whole
 from liftopt.storage.solved_scenario import scenario_or_solved
+from liftopt.types import Progress
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def add_pareto_parser(commands: Any) -> None:
     parser.set_defaults(run=telling(pareto))
 
 
-def pareto(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
+def pareto(args: argparse.Namespace, progress: Progress | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:

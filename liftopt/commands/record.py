@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import re
 import threading
-from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from liftopt.commands.exit_status import DONE
 from liftopt.commands.terminal import write
 from liftopt.errors import InputError
+from liftopt.types import Progress
 
 if TYPE_CHECKING:
     from liftopt.lab.forces.calibration import Calibration
@@ -115,7 +115,7 @@ def _record(args: argparse.Namespace) -> int:
     return DONE
 
 
-def record(args: argparse.Namespace, progress: Callable[[str], None]) -> None:
+def record(args: argparse.Namespace, progress: Progress) -> None:
     """Record until Ctrl-C.
 
     Args:
@@ -161,7 +161,7 @@ def record(args: argparse.Namespace, progress: Callable[[str], None]) -> None:
     progress(session.summary())
 
 
-def _serve(session: RecordSession, browser: bool, progress: Callable[[str], None]) -> None:
+def _serve(session: RecordSession, browser: bool, progress: Progress) -> None:
     from liftopt.lab.forces.record_server import RecordServer
     from liftopt.viz.viewer_server import opened
 

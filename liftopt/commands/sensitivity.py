@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +11,7 @@ from liftopt.commands.terminal import telling
 from liftopt.errors import InputError
 from liftopt.files.atomic_file import write_whole
 from liftopt.storage.solved_scenario import scenario_or_solved
+from liftopt.types import Progress
 from liftopt.viz import FORMATS
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def add_sensitivity_parser(commands: Any) -> None:
     parser.set_defaults(run=telling(sensitivity))
 
 
-def sensitivity(args: argparse.Namespace, progress: Callable[[str], None] | None = None) -> str:
+def sensitivity(args: argparse.Namespace, progress: Progress | None = None) -> str:
     """Do what the command line says and return what it prints.
 
     Raises:

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 from liftopt.commands.exit_status import DONE
 from liftopt.files.interrupt import interrupts
+from liftopt.types import Progress
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-Progress = Callable[[str], None]
 Command = Callable[[argparse.Namespace], int]
 
 

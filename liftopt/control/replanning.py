@@ -17,7 +17,6 @@ import time
 from dataclasses import replace
 
 from liftopt.assessment.assess import assessed
-from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
@@ -27,6 +26,7 @@ from liftopt.search.mesh_accuracy import estimate
 from liftopt.search.session import Session
 from liftopt.search.solve import find_lift, solution_of
 from liftopt.solution.solution import Solution, StartRecord
+from liftopt.types import Progress
 
 WARM = "last optimum"
 

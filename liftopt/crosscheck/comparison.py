@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.multibody.dh import Array
+from liftopt.types import Array
 
 TOLERANCE = 1e-9
 

@@ -16,16 +16,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
 from liftopt.scenario.build import agents_of, object_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TURNING = "grasp moments"
 
 
@@ -68,7 +67,7 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
         panels: panels of Simpson's rule between two knots.
     """
     factor = 2 * panels
-    dense = refined(solution, factor)
+    dense = resample(solution, factor)
     models = agents_of(solution.scenario, solution.urdfs)
     books = [_agent(*pair, dense.time, factor) for pair in zip(models, dense.agents, strict=True)]
     held_model = object_of(solution.scenario, solution.urdfs)

@@ -13,7 +13,8 @@ import numpy as np
 
 from liftopt.crosscheck.kinematics import ChainMotion
 from liftopt.crosscheck.lagrangian import ExternalLoad, torque_terms
-from liftopt.multibody.dh import Array, DHChain
+from liftopt.multibody.dh import DHChain
+from liftopt.types import Array
 
 STEP = 64.0  # N or Nm; a power of two, so that dividing by it does not round
 # Roundings of each end, none of a number larger than ``size`` below: the shift of the load, three products and their

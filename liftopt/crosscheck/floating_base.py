@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from liftopt.crosscheck.kinematics import ChainMotion
-from liftopt.multibody.dh import Array
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

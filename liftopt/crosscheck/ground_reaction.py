@@ -15,7 +15,8 @@ import numpy as np
 
 from liftopt.crosscheck.kinematics import chain_motion
 from liftopt.crosscheck.lagrangian import ExternalLoad, homogeneous, torque_terms
-from liftopt.multibody.dh import Array, BodyInertia, DHChain, DHRow, frame_transforms
+from liftopt.multibody.dh import BodyInertia, DHChain, DHRow, frame_transforms
+from liftopt.types import Array
 
 ROTATIONS = 3
 TRANSLATIONS = 3

@@ -31,14 +31,13 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.task import LiftTask
 from liftopt.crosscheck.instant import FORCE_SIZE, OBJECT_SIZE, Coordinates, Instant, instant
 from liftopt.errors import SolverError
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 FEWEST = 2
 TORQUE_UNIT, FORCE_UNIT = 10.0, 10.0  # what the solver sees as one: near the size of what is found [Nm, N]
 TOLERANCE = 1e-7

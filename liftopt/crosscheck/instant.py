@@ -16,14 +16,14 @@ import numpy.typing as npt
 
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 OBJECT_SIZE, FORCE_SIZE = 6, 3
 
 
 @dataclass(frozen=True)
 class Coordinates:
-    """What moves: the agents' joints that are not pinned, then the object's coordinates that are not locked.
+    """What moves: the agents' joints that are not locked, then the object's coordinates that are not locked.
 
     Attributes:
         joints: number of moving joints of each agent.

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.multibody.dh import Array, DHChain, DHRow, rotation_x
+from liftopt.multibody.dh import DHChain, DHRow, rotation_x
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

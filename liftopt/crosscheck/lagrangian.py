@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from liftopt.crosscheck.kinematics import ChainMotion, chain_motion
-from liftopt.multibody.dh import Array, BodyInertia, DHChain
+from liftopt.multibody.dh import BodyInertia, DHChain
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

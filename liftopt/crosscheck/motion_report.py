@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from io import StringIO
 
 import numpy as np
@@ -17,8 +17,8 @@ from liftopt.crosscheck.transcriptions import render as render_study
 from liftopt.errors import InputError
 from liftopt.solution.checks import Check
 from liftopt.solution.solution import Solution
+from liftopt.types import Progress
 
-Progress = Callable[[str], None]
 INVERSE_DYNAMICS = 1e-6  # relative
 # A simulation keeps the grasps together at all times, a solution at its knots: bounds are for closure to 1 mm between.
 JOINT, POSITION, TURN = 0.02, 2e-3, 0.02  # [rad], [m], [rad]

@@ -14,13 +14,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.mujoco_model import import_mujoco
 from liftopt.multibody.trajectory import AgentTrajectory, cross
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TOGETHER = 1e-9  # [m]: axes this near to each other meet in one point
 
 

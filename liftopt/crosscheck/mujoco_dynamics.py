@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.mujoco_model import import_mujoco, joint_places, spec_of, states_of
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)
@@ -20,7 +18,7 @@ class InverseDynamics:
     Attributes:
         name: of the agent or object.
         labels: (n,) joints, or rows of the balance.
-        ours, theirs: (K, n) torques with the grasp reaction applied, pinned joints included [Nm, N]; for the object the
+        ours, theirs: (K, n) torques with the grasp reaction applied, locked joints included [Nm, N]; for the object the
             wrench its motion needs less what the grasps give, force along world axes, moment about body axes.
         scale: (n,) what an error is relative to: the largest torque of the joint, the object's weight and its weight
             at half the span of the grasps.

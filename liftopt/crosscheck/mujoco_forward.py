@@ -21,15 +21,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.multibody.mujoco_model import States, import_mujoco, spec_of, states_of
 from liftopt.scenario.build import agents_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TIME_STEP = 5e-4  # [s], at most
 SETTLING = 0.02  # time constant with which the constraints close a gap of the grasp points [s]
 HARDNESS = 0.9999  # of the constraints: the most MuJoCo allows, so its grasp forces are good to some 1e-3
@@ -127,7 +126,7 @@ class Simulation:
     @cached_property
     def _dense(self) -> Solution:
         interval = float(self.solution.time[1] - self.solution.time[0])
-        return refined(self.solution, int(np.ceil(interval / TIME_STEP - 1e-9)))
+        return resample(self.solution, int(np.ceil(interval / TIME_STEP - 1e-9)))
 
     @property
     def _step(self) -> float:

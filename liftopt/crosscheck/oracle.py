@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from liftopt.multibody.dh import Array
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ import numpy as np
 
 from liftopt.crosscheck.kinematics import ChainMotion
 from liftopt.crosscheck.lagrangian import force_vectors, joint_axes
-from liftopt.multibody.dh import Array, DHChain
+from liftopt.multibody.dh import DHChain
+from liftopt.types import Array
 
 
 def force_sensitivity(motion: ChainMotion, link: int, point: Array) -> Array:

@@ -9,7 +9,8 @@ import pinocchio as pin
 
 from liftopt.crosscheck.lagrangian import ExternalLoad
 from liftopt.crosscheck.oracle import BodyLoad
-from liftopt.multibody.dh import Array, DHChain, row_tail
+from liftopt.multibody.dh import DHChain, row_tail
+from liftopt.types import Array
 
 States = tuple[Array, Array, Array]  # q, v, a, each (S, n)
 

@@ -14,7 +14,8 @@ from liftopt.crosscheck.lagrangian import ExternalLoad, torque_terms
 from liftopt.crosscheck.oracle import BodyLoad, frame_attachment
 from liftopt.crosscheck.sensitivity import force_sensitivity
 from liftopt.crosscheck.systems import CheckedSystem, random_load, random_states
-from liftopt.multibody.dh import Array, frame_transforms
+from liftopt.multibody.dh import frame_transforms
+from liftopt.types import Array
 
 RNEA = "S^T of Pinocchio RNEA, free-flyer"
 

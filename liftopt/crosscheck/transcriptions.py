@@ -15,12 +15,11 @@ that demand is there on a coarse mesh already: the third witness.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.motion import Motion, motion_at
 from liftopt.collocation.problem import Problem, Team
@@ -32,10 +31,10 @@ from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array, Progress
 
-Array = npt.NDArray[np.float64]
 MESHES = (10, 20, 40, 80, 160)
 LIMIT_MESH = 20  # on which the limit is taken: on the default lift it is there to 3e-5
 CLOSER = 0.6  # of the distance is left, at most, on half the step
@@ -96,9 +95,7 @@ class MeshStudy:
         )
 
 
-def mesh_study(
-    solution: Solution, meshes: Sequence[int] = MESHES, progress: Callable[[str], None] | None = None
-) -> MeshStudy:
+def mesh_study(solution: Solution, meshes: Sequence[int] = MESHES, progress: Progress | None = None) -> MeshStudy:
     """Solve by both transcriptions on several meshes, each from the solution.
 
     Args:
@@ -133,7 +130,7 @@ def spline_optimum(solution: Solution, team: Team, intervals: int) -> tuple[Prob
     """Return the solve's own optimum on another mesh, started from the solution."""
     spline = motions_of(solution.scenario, intervals)
     problem = Problem(team, task_of(solution.scenario), spline.mesh())
-    dense = refined(solution, max(4, 4 * intervals // solution.intervals))
+    dense = resample(solution, max(4, 4 * intervals // solution.intervals))
     coordinates = np.hstack([*(agent.q[:, agent.moving] for agent in dense.agents), dense.object.pose])
     phase = dense.time / dense.time[-1]
     force = np.hstack([agent.grasp_force for agent in solution.agents])

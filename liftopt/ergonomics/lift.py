@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
@@ -17,8 +16,7 @@ from liftopt.scenario.agents import Person
 from liftopt.scenario.build import agent_of, subject_of
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import stand_of
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 class Lift(Protocol):

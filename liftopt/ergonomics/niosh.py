@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.ergonomics.lift import Array, Lift, R_world_person, p_world_feet
+from liftopt.ergonomics.lift import Lift, R_world_person, p_world_feet
 from liftopt.multibody.sources import Source
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
+from liftopt.types import Array
 
 SOURCE = Source(
     "Waters, Putz-Anderson, Garg & Fine (1993), Ergonomics 36:749-776; Applications Manual for the Revised NIOSH "

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.ergonomics.lift import Lift, R_world_person, model_of
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TRUNK, SHOULDER, ELBOW, WRIST = "Q3", "Q4", "Q7", "Q9"  # joints of Table 2 whose links begin there
 
 

@@ -11,8 +11,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.ergonomics.posture import Array, Posture
+from liftopt.ergonomics.posture import Posture
 from liftopt.ergonomics.rula_tables import TABLE_A, TABLE_B, TABLE_C
+from liftopt.types import Array
 
 Scores = npt.NDArray[np.int64]
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.ergonomics.lift import Lift
 from liftopt.multibody.trajectory import AgentTrajectory, limit_share
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from liftopt.scenario.model import Scenario
 from liftopt.solution import solution
+from liftopt.types import Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +37,7 @@ class Solution(solution.Solution):
         return to_xarray(self)
 
     def save(self, folder: str | Path) -> Path:
-        """Write it into a folder, whole or not at all: solution.nc, and scenario.toml and models/*.urdf beside it.
+        """Write it into a folder, whole or not at all: ``solution.nc``, and beside it the scenario and the URDFs.
 
         What is no solution never replaces one: if there is one in the folder, it goes to ``unsolved`` within.
 
@@ -62,7 +62,7 @@ class Solution(solution.Solution):
         write_report(self, Path(html))
 
 
-def solve(scenario: Scenario, *, progress: Callable[[str], None] | None = None) -> Solution:
+def solve(scenario: Scenario, *, progress: Progress | None = None) -> Solution:
     """Return the best verified lift of several starts; of one that has none, ``status`` says why.
 
     Args:

@@ -6,13 +6,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
-
-Array = npt.NDArray[np.float64]
-
+from liftopt.types import Array
 
 Kind = Literal["person", "robot"]
 KINDS: tuple[Kind, ...] = ("person", "robot")
@@ -101,7 +98,7 @@ class Agent:
         model: Pinocchio model of that URDF, all joints; the base placement is in its root's fixed joint.
         locked_joints: names of the virtual joints held at zero (eq. 13); they are eliminated from the optimisation.
         grasp_frame: name of the frame that coincides with the object's grasp point.
-        limits: of the joints that are not pinned.
+        limits: of the joints that are not locked.
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
         workspace: half-space that the grasp point must stay in, or None.
         grasp: what its hold transmits.
@@ -120,11 +117,11 @@ class Agent:
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
-        """Names of the joints that are not pinned, in the model's order."""
+        """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
 
     def reduced(self) -> pin.Model:
-        """Return the model without the pinned joints, which stay at zero."""
+        """Return the model without the locked joints, which stay at zero."""
         ids = [self.model.getJointId(name) for name in self.locked_joints]
         return pin.buildReducedModel(self.model, ids, np.zeros(self.model.nq))
 

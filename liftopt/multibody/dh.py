@@ -11,9 +11,9 @@ from math import pi
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 JointKind = Literal["prismatic", "revolute"]
 
 

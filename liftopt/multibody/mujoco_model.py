@@ -16,13 +16,12 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Earlier releases leave the term dJ/dt v of a constraint's acceleration out, and their grasps drift.
 OLDEST = (3, 7)
 NEGLIGIBLE = 1e-12  # [kg] and [kg m^2]: a billionth of a milligram

@@ -7,7 +7,8 @@ from math import pi, radians
 
 import numpy as np
 
-from liftopt.multibody.dh import Array, rotation_z, translation
+from liftopt.multibody.dh import rotation_z, translation
+from liftopt.types import Array
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from liftopt.multibody.dh import Array
+from liftopt.types import Array
 
 SHORTEST = 1e-9  # [m]: what is shorter has no direction
 

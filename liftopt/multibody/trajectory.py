@@ -13,20 +13,20 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 GRAVITY = 9.81  # m/s^2, as in the models
 
 
 @dataclass(frozen=True)
 class AgentTrajectory:
-    """The motion of one agent at K times; n joints in the order of its model, pinned ones included.
+    """The motion of one agent at K times; n joints in the order of its model, locked ones included.
 
     Attributes:
         name: of the agent.
         kind: what it is.
         joint_names: (n,) names.
-        moving: (n,) False for the pinned virtual joints.
+        moving: (n,) False for the locked virtual joints.
         q, v, a: (K, n) position, velocity, acceleration [rad or m, per s, per s^2].
         tau: (K, n) generalised forces of RNEA with the grasp reaction [Nm or N].
         grasp_force: (K, 3) force on the object, world axes [N].
@@ -57,7 +57,7 @@ class AgentTrajectory:
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
-        """Names of the joints that are not pinned, in the model's order."""
+        """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name, moves in zip(self.joint_names, self.moving, strict=True) if moves)
 
     def every(self, step: int) -> AgentTrajectory:

@@ -10,8 +10,9 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 import pinocchio as pin
 
-from liftopt.multibody.dh import Array, BodyInertia, DHChain, frame_transforms, row_origin, row_tail
+from liftopt.multibody.dh import BodyInertia, DHChain, frame_transforms, row_origin, row_tail
 from liftopt.multibody.shapes import Shape, urdf_numbers
+from liftopt.types import Array
 
 # Frames and bodies are written with all their digits; where a shape is drawn, to the micrometre.
 SHAPE_DECIMALS = 6

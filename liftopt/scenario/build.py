@@ -7,7 +7,6 @@ from collections.abc import Hashable, Mapping
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
@@ -21,8 +20,8 @@ from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import grasp_points, lead, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
 ROOM = 5.0  # [m]: half the width of the room the object may move in
 

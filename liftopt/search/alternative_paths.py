@@ -19,8 +19,8 @@ from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import CLOSING_ITERATIONS, FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.search.moves import apart, further, keep_different
 from liftopt.search.postures import scattered
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Postures tried at each of three times, and paths of each agent that are kept.
 SEEDS, MOST = 8, 6
 # Gap [m] that inverse kinematics may leave: the solver closes it.

@@ -7,7 +7,6 @@ from functools import partial
 from operator import is_not
 from typing import Any, TypeVar
 
-from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
@@ -17,6 +16,7 @@ from liftopt.collocation.spline import Mesh, RestToRestSpline
 from liftopt.scenario.build import agent_key, agent_of, object_key, object_of, task_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.postures import PostureSolver
+from liftopt.types import Progress
 
 T = TypeVar("T")
 BANDED, IPOPT = "banded", "ipopt"  # solvers by name

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem
@@ -17,8 +16,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import SOLVED, Solution, StartRecord
 from liftopt.solution.verify import verify
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
@@ -15,8 +14,8 @@ from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.search.inverse_kinematics import InverseKinematics
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
 from liftopt.solution.infeasibility_report import InfeasibilityReason
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 REACHED = 1e-4  # [m]
 SEEDS, ITERATIONS = 24, 25
 # Iterations from the nearest postures of all: stretched arms converge slowly.

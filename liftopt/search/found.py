@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.search.candidate import Candidate
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.infeasibility_report import InfeasibilityReason
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 @dataclass(frozen=True, eq=False)

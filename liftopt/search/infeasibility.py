@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.elastic_mode import ElasticMotion, Violation, solve_elastic
 from liftopt.collocation.problem import Problem
@@ -19,8 +18,8 @@ from liftopt.search.feasibility_screen import screen_ends, too_fast
 from liftopt.search.initial_guess import InitialGuess, blend
 from liftopt.search.postures import PostureSolver
 from liftopt.solution.infeasibility_report import InfeasibilityReason
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 MOST_REASONS = 5
 # Starts, and iterations of IPOPT for all of them: what converges takes fewer than so many in all.
 TRIES, ITERATIONS = 3, 300

@@ -8,19 +8,18 @@ agents take turns. What they lead to tells which moves to combine (``recombined`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.search.moves import Move, blend_all, combinations, find_moves
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
+from liftopt.types import Array, Progress
 
-Array = npt.NDArray[np.float64]
 # Postures nearer than this in every joint [rad] lead to the same ones.
 SAME_POSTURE = 0.03
 # Seeds tried at once, at least, and rounds of them after which an end that no posture was found for is given up. There
@@ -87,7 +86,7 @@ def initial_guesses(
     most: int,
     seed: int,
     deadline: Deadline,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress | None = None,
     postures: PostureSolver | None = None,
     seeds: int = 0,
     rounds: int = ROUNDS,
@@ -124,7 +123,7 @@ def posture_starts(
     count: int,
     seed: int,
     deadline: Deadline,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress | None = None,
     postures: PostureSolver | None = None,
     rounds: int = ROUNDS,
 ) -> list[InitialGuess]:

@@ -11,14 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 CLOSED = 1e-6  # [m]
 # A seed that is not closed by then seldom closes.
 CLOSING_ITERATIONS = 20

@@ -13,7 +13,6 @@ it ends at another motion, there is no estimate.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +24,8 @@ from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.optimum_on_mesh import FASTEST_FIRST, optimum_on_mesh
 from liftopt.solution.accuracy import OTHER_MOTION, Accuracy
+from liftopt.types import Progress
 
-Progress = Callable[[str], None]
 # Optima of one basin on several meshes are nearer to each other than this, those of others are not (docs/tuning.md).
 SAME_MOTION = 0.4  # [rad, m]
 # A coarser mesh than this tells little of the limit.

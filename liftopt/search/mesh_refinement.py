@@ -120,7 +120,7 @@ def continue_on_mesh(
         solve(candidate)
     origin = min(found, key=objective_of).origin if found else None
     if origin is not None:
-        session.progress(f"solving on {intervals} intervals afresh: {origin.start}")
+        session.progress(f"solving on {intervals} intervals from the motion alone: {origin.start}")
         solve(origin, without_multipliers=True)
     return each_once(found)
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.collocation.problem import Problem
 from liftopt.multibody.agent import Agent
 from liftopt.search.initial_guess import MISSED, InitialGuess
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # A joint that is nearly straight [rad] has no other way to bend; axes with less than this between them are parallel.
 STRAIGHT, PARALLEL = 0.15, 1e-6
 HALF_TURN, WHOLE_TURN = (np.pi, -np.pi), (0.0, 2 * np.pi, -2 * np.pi)

@@ -19,8 +19,8 @@ from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.multibody.agent import Agent
 from liftopt.search.postures import Posture, PostureSolver
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Peak speed of the quintic blend over its mean speed.
 QUINTIC_PEAK = 1.875
 # Weight of holding still at both ends for the whole time, beside the objective of the blend between them: what costs

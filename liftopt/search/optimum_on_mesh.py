@@ -10,12 +10,14 @@ from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
+from liftopt.types import Progress
 
-Progress = Callable[[str], None]
 FASTEST_FIRST = (BANDED, IPOPT)
 IPOPT_ITERATIONS = 200  # from each start, where it takes over from another solver
 MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
-AFRESH = ", afresh on "  # before the mesh to which the motion of a start was taken without its multipliers
+WITHOUT_MULTIPLIERS = (
+    ", without multipliers on "  # before the mesh to which the motion of a start was taken without its multipliers
+)
 
 
 def optimum_on_mesh(
@@ -49,7 +51,7 @@ def optimum_on_mesh(
     if not without_multipliers:
         warm = transfer_multipliers(candidate.problem, candidate.result.multipliers, problem)
     origin, asked = candidate.start.partition(MESH)[0], scenario.solver.intervals
-    origin += f"{AFRESH}{intervals}" if without_multipliers else ""
+    origin += f"{WITHOUT_MULTIPLIERS}{intervals}" if without_multipliers else ""
     start_name = origin if intervals == asked else f"{origin}{MESH}{intervals}"
     for name in solvers:
         try:

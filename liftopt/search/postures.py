@@ -10,10 +10,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.deadline import Deadline
@@ -25,8 +23,8 @@ from liftopt.collocation.task import LiftTask
 from liftopt.errors import SolverError
 from liftopt.multibody.agent import Agent
 from liftopt.search.inverse_kinematics import CLOSED, CLOSING_ITERATIONS, InverseKinematics
+from liftopt.types import Array, Progress
 
-Array = npt.NDArray[np.float64]
 POSTURE_WEIGHT = 1e-2
 # Seeds spread by this share of each joint's range about the comfortable posture.
 SPREAD = 0.35

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import NEVER, Deadline
@@ -13,8 +12,8 @@ from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import IPOPT, SolverCache
 from liftopt.solution.solution import CUT_SHORT, StartRecord
+from liftopt.types import Progress
 
-Progress = Callable[[str], None]
 # How far a search goes is counted in starts and iterations. The time limit only stops what takes longer than foreseen:
 # trying what leads where at the first share of it, so that the best found can be finished, and that at the second, so
 # that it can be verified and written.

@@ -12,7 +12,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from liftopt.assessment.assess import assessed
@@ -29,6 +28,7 @@ from liftopt.search.session import Session
 from liftopt.search.solve_starts import solve_starts
 from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
+from liftopt.types import Progress
 
 # Postures searched from, for each start tried on a coarse mesh: with one, some lifts miss the best motion
 # (docs/tuning.md).
@@ -38,9 +38,7 @@ SEEDS_A_TRY = 2
 WIDER, LEAN = 2, 60
 
 
-def solve(
-    scenario: Scenario, *, progress: Callable[[str], None] | None = None, cache: SolverCache | None = None
-) -> Solution:
+def solve(scenario: Scenario, *, progress: Progress | None = None, cache: SolverCache | None = None) -> Solution:
     """Solve a scenario from several starts and return the best verified solution.
 
     Where there is none, the solution returned says why in ``status`` and holds the best iterate.

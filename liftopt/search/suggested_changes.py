@@ -8,7 +8,6 @@ not proven.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers, Solver, SolverResult
@@ -25,8 +24,8 @@ from liftopt.search.mesh_refinement import refine_while
 from liftopt.search.postures import PostureSolver
 from liftopt.search.session import Session
 from liftopt.solution.infeasibility_report import SuggestedChange
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 STARTS = 2  # of each changed scenario
 ITERATIONS = 150  # of each start
 ENOUGH = 4  # changes that are told

@@ -6,7 +6,6 @@ A slow lift may gain by a detour to where the object is easily held. Its ends te
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.layout import OBJECT_SIZE
@@ -17,8 +16,8 @@ from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.inverse_kinematics import FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.search.moves import apart, further, keep_different, quintic
 from liftopt.search.postures import Posture, PostureSolver, seed_coordinates
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Postures searched from so many seeds, and so many kept whose links are further apart than this [m].
 SEEDS, MOST, APART = 16, 8, 0.1
 # Share of the time to get there, and to come back.

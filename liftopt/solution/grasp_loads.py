@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.trajectory import AgentTrajectory, cross
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 FREE_FALL = 1e-3  # N; below this the vertical load is too small to be shared out
 
 

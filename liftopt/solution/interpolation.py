@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.checks import FINER
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 
 def between_knots(solution: Solution) -> Solution:
@@ -20,10 +18,10 @@ def between_knots(solution: Solution) -> Solution:
 
     Limits hold at the knots only, so that a peak between them can be larger than any at them.
     """
-    return refined(solution, FINER)
+    return resample(solution, FINER)
 
 
-def refined(solution: Solution, factor: int) -> Solution:
+def resample(solution: Solution, factor: int) -> Solution:
     """Return ``solution`` at ``factor`` times as many intervals; the knots stay among the times.
 
     Accelerations and grasp forces are linear between knots, so that velocities and positions follow exactly; torques

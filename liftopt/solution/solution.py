@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
-import numpy.typing as npt
-
 from liftopt.errors import InputError
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
@@ -15,8 +12,8 @@ from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Verification
 from liftopt.solution.finding import Assessment
 from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 SOLVED = "solved"
 CUT_SHORT = "cut the search short"  # by time; in notes, and in the status where there is no solution
 

@@ -13,19 +13,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.trajectory import GRAVITY, limit_share
 from liftopt.scenario.agents import Person
 from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
+from liftopt.types import Array
 
 if TYPE_CHECKING:
     from liftopt.multibody.trajectory import AgentTrajectory
     from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
 
 
 AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective
@@ -51,7 +49,7 @@ def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[st
         "exit_status": 0 if solved else 3,
         "reason": None if solved else solution.status,
         "reasons": [asdict(reason) for reason in solution.reasons],
-        "remedies": [asdict(change) for change in solution.suggested_changes],
+        "suggested_changes": [asdict(change) for change in solution.suggested_changes],
         "assessment": solution.assessment.plain(),
         "out": None if out is None else str(out),
         "files": [] if out is None else [str(out / name) for name in files],

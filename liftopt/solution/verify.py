@@ -15,8 +15,8 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.multibody.trajectory import angle_between, attitude, turned
 from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, Check, Verification
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
 AT_ENDS = 1e-9
 OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio

@@ -13,17 +13,16 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.solution.solution import Solution
 from liftopt.storage.record import record
 from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
+from liftopt.types import Array
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = npt.NDArray[np.float64]
 LIBRARIES = ("casadi", "pin", "numpy", "scipy", "h5netcdf")
 
 

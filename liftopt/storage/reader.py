@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.assessment.assess import assessed
 from liftopt.errors import NO_VALUE, InputError
@@ -27,8 +26,8 @@ from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
 from liftopt.storage.result_path import no_result, result_file
 from liftopt.storage.solved_scenario import scenario_of
 from liftopt.storage.urdf_check import check_urdf
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 MOST_KNOTS = 10_000
 LARGEST_VALUE = 1e12  # in SI units; the worst iterate of a solver that failed is far below
 SAME_TIME = 1e-6  # of the duration

@@ -52,7 +52,7 @@ def record(solution: Solution) -> dict[str, Any]:
         "notes": solution.notes,
         "accuracy": None if solution.accuracy is None else _accuracy(solution.accuracy),
         "reasons": [asdict(reason) | {"amount": _finite(reason.amount)} for reason in solution.reasons],
-        "remedies": [asdict(change) for change in solution.suggested_changes],
+        "suggested_changes": [asdict(change) for change in solution.suggested_changes],
     }
 
 
@@ -85,7 +85,7 @@ def read_record(text: str, agents: Sequence[str]) -> Record:
         notes=tuple(_of("notes", note, str) for note in _of("notes", read["notes"], list)),
         accuracy=None if accuracy is None else _entry(Accuracy, accuracy),
         reasons=_entries(InfeasibilityReason, read.get("reasons", [])),
-        suggested_changes=_entries(SuggestedChange, read.get("remedies", [])),
+        suggested_changes=_entries(SuggestedChange, read.get("suggested_changes", read.get("remedies", []))),
     )
     if not found.checks:
         raise ValueError("no check is recorded")

@@ -11,7 +11,7 @@ both efforts: such points are dropped.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,8 +25,8 @@ from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import lead, partner
 from liftopt.search.candidate import Candidate
 from liftopt.solution.grasp_loads import shares
+from liftopt.types import Progress
 
-Progress = Callable[[str], None]
 DECADES = 4.0  # that the ratio of the weights runs over
 # Where a warm solve across a step in weights fails, it is tried in two halves, this often.
 HALVINGS = 2

@@ -11,11 +11,10 @@ that lies elsewhere is another optimum, and no slope joins the two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.parametric import Optimum, Tangent
@@ -29,8 +28,8 @@ from liftopt.search.candidate import Candidate
 from liftopt.solution.checks import FINER
 from liftopt.solution.grasp_loads import shares
 from liftopt.studies.parameters import Parameter, changed, parameters_of
+from liftopt.types import Progress
 
-Array = npt.NDArray[np.float64]
 # Of central differences of the problem itself, times the value: their error is its square.
 STEP = 1e-4
 SMALLEST = 0.1  # what counts as the value of a parameter that is smaller
@@ -92,7 +91,7 @@ class SensitivityStudy:
     left_out: tuple[tuple[Parameter, str], ...]
 
 
-def sensitivity(scenario: Scenario, progress: Callable[[str], None] | None = None) -> SensitivityStudy:
+def sensitivity(scenario: Scenario, progress: Progress | None = None) -> SensitivityStudy:
     """Return what a lift depends on: it is solved, and solved again with each parameter a little up and down.
 
     Args:
@@ -118,7 +117,7 @@ def study(
     candidate: Candidate,
     cache: SolverCache,
     parameters: Sequence[Parameter] | None = None,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress | None = None,
 ) -> SensitivityStudy:
     """Return what a plan depends on.
 
@@ -181,7 +180,7 @@ class _Differences:
         carried = [name for name in self.now if name.startswith("share")]
         self.told = [*self.relative, *carried, *(f"used {name}" for name in self.busiest)]
 
-    def study(self, parameters: Sequence[Parameter], progress: Callable[[str], None]) -> SensitivityStudy:
+    def study(self, parameters: Sequence[Parameter], progress: Progress) -> SensitivityStudy:
         """Return what the plan depends on."""
         found, left_out = [], []
         for parameter in parameters:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 EXACT = 9  # decimals of a placement: a URDF's angles give quarter turns with an error in the last digit
 
 

@@ -9,13 +9,14 @@ import numpy as np
 import pinocchio as pin
 from scipy.spatial import ConvexHull
 
-from liftopt.viz.plots_style import Array
+from liftopt.types import Array
 
 CIRCLE = 24  # points of a drawn circle
 # World axes that point to the right, up and away from the reader, by where the reader stands.
 VIEWS: dict[str, Array] = {
     "right": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),  # of the person: X to the right
     "front": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]),  # of the person: Y to the right
+    "behind": np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),  # the person: Y to the left
     "above": np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]),
 }
 

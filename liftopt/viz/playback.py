@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
@@ -14,9 +13,9 @@ from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import agents_of
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 from liftopt.viz.base import base_of
 
-Array = npt.NDArray[np.float64]
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
 
 

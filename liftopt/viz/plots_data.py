@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from liftopt.solution.checks import FINER
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 
 
@@ -26,4 +26,4 @@ class Lift:
     @staticmethod
     def of(solution: Solution, factor: int = FINER) -> Lift:
         """Return the lift of ``solution``."""
-        return Lift(solution, refined(solution, factor), factor)
+        return Lift(solution, resample(solution, factor), factor)

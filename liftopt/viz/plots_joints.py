@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 
 from liftopt.multibody.joint_curves import JointCurve, human_curves, robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.types import Array
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Array, Line, draw, panels, percent, time_axes
+from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Line, draw, panels, percent, time_axes
 from liftopt.viz.who import robot_of
 
 Quantity = Literal["angle", "torque"]

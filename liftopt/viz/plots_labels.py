@@ -7,14 +7,14 @@ from itertools import pairwise
 from typing import Any, cast
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 Point = tuple[float, float]
 NEAR, FAR, RINGS = 7.0, 14.0, 4  # distances of a label from its point that are tried [pt], and how many
 ROUND = 12  # directions that are tried, up and to the right first

@@ -15,10 +15,11 @@ from liftopt.assessment.who import listed, who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 from liftopt.viz.base import base_of
 from liftopt.viz.outlines import outlines
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.plots_style import BLUE, GREEN, INK, PURPLE, VERMILION, Array
+from liftopt.viz.plots_style import BLUE, GREEN, INK, PURPLE, VERMILION
 from liftopt.viz.who import stand_opposite
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)

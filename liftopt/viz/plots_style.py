@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 Grid = tuple[Figure, list[list[Axes]]]
 
 # Okabe & Ito (2008), "Color Universal Design": distinguishable with any common colour vision.

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.dh import translation
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
 from liftopt.viz.scene_commands import Command, clip, place, set_object
@@ -24,7 +24,6 @@ from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
 from liftopt.viz.who import colour_of, robot_of
 
-Array = npt.NDArray[np.float64]
 WOOD: Colour = (0.78, 0.60, 0.38)
 SHADE = 0.75  # of a shirt against the arrows of who wears it
 PATH_RADIUS = 0.004  # [m]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from liftopt.types import Array
 from liftopt.viz.playback import ForceTrack, continuous
 from liftopt.viz.scene_commands import Command, set_object
 from liftopt.viz.scene_mesh import cylinder
 from liftopt.viz.scene_part import Colour
 
-Array = npt.NDArray[np.float64]
 SHAFT_RADIUS, HEAD_RADIUS, HEAD_LENGTH = 0.010, 0.026, 0.07  # [m]
 SMALLEST = 1e-4  # of a scale: a node of size zero cannot be inverted
 

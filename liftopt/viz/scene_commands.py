@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from liftopt.types import Array
 from liftopt.viz.scene_mesh import Mesh
 from liftopt.viz.scene_part import Colour
 
-Array = npt.NDArray[np.float64]
 Command = dict[str, Any]
 DECIMALS = 4  # of a drawn length: 0.1 mm
 

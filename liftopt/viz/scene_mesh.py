@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 SIDES, FEW_SIDES = 20, 8  # of a ring: smooth at the size of a screen, for limbs and for fingers
 THIN = 0.02  # [m]
 CAP_RINGS = 3  # of a rounded end

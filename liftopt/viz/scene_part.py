@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from liftopt.types import Array
 from liftopt.viz.scene_mesh import Mesh
 
-Array = npt.NDArray[np.float64]
 Colour = tuple[float, float, float]
 
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from liftopt.multibody.dh import Array
 from liftopt.multibody.robots.sawyer_description import (
     FLANGE_IN_LAST_LINK,
     HEAD_IN_FIRST_LINK,
     JOINTS,
     described_frames,
 )
+from liftopt.types import Array
 from liftopt.viz.scene_mesh import Mesh, Ring, ball, block, capsule, cylinder, merged, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
 

@@ -7,15 +7,14 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.dh import rotation_x, rotation_z, translation
 from liftopt.multibody.robots.sawyer_description import HEAD_IN_FIRST_LINK, JOINTS, described_frames
+from liftopt.types import Array
 from liftopt.viz.scene_mesh import Mesh
 from liftopt.viz.scene_part import GROUND, Colour, Part
 
-Array = npt.NDArray[np.float64]
 DESCRIPTION = "urdf/sawyer_base.urdf.xacro"
 RED: Colour = (0.55, 0.07, 0.08)
 DARK: Colour = (0.16, 0.16, 0.17)

@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from liftopt.types import Array
 from liftopt.viz.scene_commands import Command, set_object
 from liftopt.viz.scene_mesh import Mesh
 from liftopt.viz.scene_part import Colour, Part
 
-Array = npt.NDArray[np.float64]
 TOUCHES = 0.03  # height below which a vertex counts as standing on the floor [m]
 APART = 0.10  # between what touches the floor apart [m]
 # How dark it is so far outside the half axes of what stands there [m]; under it as at the first.

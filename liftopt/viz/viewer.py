@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.interrupt import interrupts
+from liftopt.types import Progress
 from liftopt.viz.viewer_server import FIRST_PORT, PageServer, opened
 
 
@@ -20,7 +20,7 @@ def view(
     sawyer: str | Path | None = None,
     port: int = FIRST_PORT,
     browser: bool = True,
-    progress: Callable[[str], None] = print,
+    progress: Progress = print,
 ) -> None:
     """Play a result in the browser until Ctrl-C, or write the playback to a file.
 

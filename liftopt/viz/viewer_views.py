@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.types import Array
 from liftopt.viz.scene import Cast
 
-Array = npt.NDArray[np.float64]
 Box = list[list[float]]
 # Around joints: what of a person, a robot and the hands is in view [m].
 BODY, ROBOT, HANDS = 0.25, 0.05, 0.18

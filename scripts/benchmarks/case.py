@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from benchmarks.scenarios import Ends
 from liftopt.collocation.problem import Problem, Team
@@ -21,8 +20,8 @@ from liftopt.search.cache import SolverCache
 from liftopt.search.initial_guess import blend, naive_guess
 from liftopt.search.postures import Posture
 from liftopt.solution.verify import verify
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TOLERANCE = 1e-6
 PATIENCE = 60.0  # [s] for one solve
 

@@ -23,7 +23,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from benchmarks.beside import Beside, said
@@ -33,8 +32,8 @@ from benchmarks.moco_path import as_answer, on_our_models
 from liftopt.collocation.motion import Motion, motion_at, objective_weights
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 TOLERANCE, FINE = 1e-3, 1e-6
 AXES = {"RX": [1.0, 0.0, 0.0], "RY": [0.0, 1.0, 0.0], "RZ": [0.0, 0.0, 1.0]}
 # The object's coordinates but its roll, which two point grasps cannot turn and which is locked.

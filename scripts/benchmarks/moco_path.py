@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from benchmarks.case import Case
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.motion import objective_weights
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 RATES = ("q", "v", "a")
 
 

@@ -18,8 +18,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.problem import Problem
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 # Room for a superbasic variable of every degree of freedom; the limits on iterations are out of the way. On the lift at
 # the paper's size 50 updates of the Hessian took two thirds of the time that SNOPT's 10 took, 200 or a full Hessian

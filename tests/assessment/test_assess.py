@@ -214,7 +214,7 @@ def test_what_is_not_checked_and_what_is_weak_is_said(light: Solution) -> None:
     assert all(finding.source for finding in light.assessment if finding.limit is not None)
 
 
-def test_an_iterate_is_not_judged_and_its_remedies_name_keys(light: Solution) -> None:
+def test_an_iterate_is_not_judged_and_its_suggested_changes_name_keys(light: Solution) -> None:
     failed = replace(
         light,
         outcome="infeasible: too far",
@@ -226,7 +226,7 @@ def test_an_iterate_is_not_judged_and_its_remedies_name_keys(light: Solution) ->
     assert assessment[0].code == "verdict.mathematics"
     assert "infeasible: too far" in assessment[0].message
     assert not assessment.about("person") and not assessment.about("robot")
-    (change,) = _of(assessment, "mathematics.remedy")
+    (change,) = _of(assessment, "mathematics.suggested_change")
     assert "task.standing_distance = 1.80" in change.message
 
 

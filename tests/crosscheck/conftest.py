@@ -11,7 +11,6 @@ import pytest
 from liftopt.crosscheck.systems import CheckedSystem
 from liftopt.multibody.dh import (
     ROTATION_WORLD_PAPER,
-    Array,
     BodyInertia,
     DHChain,
     DHRow,
@@ -21,6 +20,7 @@ from liftopt.multibody.dh import (
     row_tail,
     table_rows,
 )
+from liftopt.types import Array
 
 SAWYER_LENGTHS = (0.317, 0.081, 0.1925, 0.4, 0.1685, 0.4, 0.1363, 0.1345, 0.915)
 

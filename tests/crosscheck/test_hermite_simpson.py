@@ -13,7 +13,7 @@ from liftopt.crosscheck.instant import instant
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of, task_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 STATES = 5
@@ -108,7 +108,7 @@ def test_ramps_of_acceleration_take_both_optima_to_the_same_limit_from_above(sti
 def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models, solution):
     agents, held, task = models
     transcription = HermiteSimpson(agents, held, task, 6)
-    found = transcription.solve(points_of(refined(solution, 3), transcription.at).every(5))
+    found = transcription.solve(points_of(resample(solution, 3), transcription.at).every(5))
     assert found.converged
     assert found.violation < 1e-6
     arms = found.points

@@ -15,7 +15,7 @@ import pytest
 from liftopt.crosscheck.mujoco_dynamics import inverse_dynamics
 from liftopt.errors import InputError
 from liftopt.multibody.mujoco_model import merged_urdf, spec_of, states_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 
@@ -28,7 +28,7 @@ def solution(solved: Callable[..., Any]) -> Any:
 
 @pytest.mark.parametrize("factor", [1, 7], ids=["knots", "between knots"])
 def test_torques_and_balance_are_those_that_mujoco_finds(solution, factor):
-    for found in inverse_dynamics(refined(solution, factor) if factor > 1 else solution):
+    for found in inverse_dynamics(resample(solution, factor) if factor > 1 else solution):
         assert found.relative < 1e-8, (found.name, found.worst)
         assert found.gap < 1e-12
 
@@ -82,7 +82,7 @@ def test_velocities_are_the_rates_of_the_positions_in_mujocos_conventions(soluti
     mujoco, model, dense = (
         pytest.importorskip("mujoco"),
         spec_of(solution.urdfs.values()).compile(),
-        refined(solution, 200),
+        resample(solution, 200),
     )
     states, step = states_of(model, dense.agents, dense.object), dense.time[1]
     rate = np.zeros(model.nv)

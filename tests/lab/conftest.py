@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 import pytest
 
@@ -21,10 +20,9 @@ from liftopt.multibody.person.human import human_chain, human_root
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 RATE = 100.0
 STANDING = 0.4  # s before and after a lift made up
@@ -144,7 +142,7 @@ def box_lift() -> Path:
 
 def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, raised: float = 0.0) -> RecordedLift:
     """Return a record of the predicted motion: late by a share of the lift, values scaled, angles raised."""
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     human, held = dense.agents[0], dense.object
     duration = float(dense.time[-1])
     time = np.arange(round((duration + 2 * STANDING) * 200) + 1) / 200

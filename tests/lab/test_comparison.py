@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
@@ -18,10 +17,10 @@ from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.trajectory import GRAVITY
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 Made = Callable[..., RecordedLift]
 
@@ -118,7 +117,7 @@ def test_anatomical_signs(as_recorded: Made, solution: Solution) -> None:
 
 def test_force_sensors(as_recorded: Made, solution: Solution) -> None:
     """Sensors that show 0.8 of the predicted force: the prediction is 25 % higher; irregular samples at about 0.1 s."""
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     time = np.sort(np.append(np.random.default_rng(1).uniform(0.0, 2.0, 30), [0.0, 2.0]))
     force = 0.8 * np.interp(time, dense.time, dense.agents[0].grasp_force[:, 2])
     flags = np.zeros((len(time), 2), np.uint8)

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 import pytest
 
@@ -17,12 +16,12 @@ from liftopt.lab.robot.bags import Kind, Record, write_bag
 from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
 from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosMessages
 from liftopt.scenario.build import agent_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
 pytest.importorskip("rosbags", reason="rosbags is not installed (it is in the extra 'lab')")
 
-Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 # The manufacturer's names; the head is among them, and the fourth joint turns the other way than in Table 3.
 NAMES = ["head_pan", *(f"right_j{i}" for i in range(7))]
@@ -38,7 +37,7 @@ def solution(solved: Callable[..., Any]) -> Solution:
 
 def states(solution: Solution, late: float = 0.0, after: float = 1.0) -> tuple[Array, Array, Array]:
     """Return times since the goal was sent, angles and torques in Sawyer's signs; the motion is ``late`` [s]."""
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     robot = dense.agents[1]
     time = np.arange(-50, round((float(dense.time[-1]) + after) * RATE) + 1) / RATE
 
@@ -74,7 +73,7 @@ def bag(path: Path, rows: tuple[Array, Array, Array], kind: Kind = "ros1", goal:
 @pytest.mark.parametrize("kind", ["ros1", "ros2", "mcap"])
 def test_a_bag_is_read_back_in_the_signs_of_table_3(solution: Solution, tmp_path: Path, kind: Kind) -> None:
     record = read_robot_record(bag(tmp_path / "trial", states(solution), kind))
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     robot = dense.agents[1]
     assert record.tau is not None
     assert record.told_by == "when the trajectory was sent"
@@ -116,7 +115,7 @@ def test_three_trials_averaged(solution: Solution, tmp_path: Path) -> None:
 )
 def test_what_efforts_may_mean(solution: Solution, sign: float, beyond_gravity: bool, said: str | None) -> None:
     """Efforts made with another meaning, by Pinocchio's gravity torques, are told apart but not changed."""
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     robot = dense.agents[1]
     model = agent_of(solution.scenario, "robot", solution.urdfs).model
     data = model.createData()
@@ -130,7 +129,7 @@ def test_what_efforts_may_mean(solution: Solution, sign: float, beyond_gravity: 
 
 
 def test_a_robot_that_ran_another_lift_is_said(solution: Solution) -> None:
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     q = dense.agents[1].q[:, dense.agents[1].moving]
     for off, said in ((0.0, False), (10.0, True)):
         record = RobotRecord("made up", dense.time, q + np.radians(off), None, (0.0,))
@@ -182,7 +181,7 @@ def test_a_bag_that_ends_too_soon(solution: Solution, tmp_path: Path) -> None:
 
 
 def test_a_bag_that_begins_too_late(solution: Solution) -> None:
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     q = dense.agents[1].q[:, dense.agents[1].moving]
     record = RobotRecord("made up", dense.time, q, None, sent=(-0.3,))
     with pytest.raises(InputError, match=r"begins 0\.30 s after the lift does"):

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from liftopt.commands.cli import main
@@ -22,8 +21,8 @@ from liftopt.lab.robot.robot_limits import check_server, check_start
 from liftopt.multibody.robots.sawyer import sawyer_limits
 from liftopt.solution.solution import Solution
 from liftopt.storage.writer import save
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 
 

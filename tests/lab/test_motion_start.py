@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
@@ -19,10 +18,10 @@ from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
 from liftopt.lab.robot.ros_messages import FEEDBACK, JOINT_STATE, LOG, SECOND, RosMessages
 from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Plan = tuple[Array, Array]
 RATE, BEGUN = 100.0, 1_000.0  # Hz; s on the recorder's clock when the recording begins
 ACTION = GOAL_TOPIC.removesuffix("/goal")
@@ -42,7 +41,7 @@ def solution(request: pytest.FixtureRequest, solved: Callable[..., Any]) -> Solu
 
 @pytest.fixture(scope="module")
 def plan(solution: Solution) -> Plan:
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     robot = dense.agents[1]
     return dense.time, robot.q[:, robot.moving]
 

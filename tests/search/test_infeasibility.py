@@ -136,7 +136,7 @@ def test_each_suggested_change_leads_to_a_verified_lift_and_is_told(overrides: t
     solution = _solution(*overrides)
     assert solution.suggested_changes == tuple(sorted(solution.suggested_changes, key=lambda change: change.size))
     summary = summary_dict(solution)
-    assert [entry["message"] for entry in summary["remedies"]] == [
+    assert [entry["message"] for entry in summary["suggested_changes"]] == [
         change.message for change in solution.suggested_changes
     ]
     assert solution.suggested_changes

@@ -17,7 +17,8 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.commands.cli import main
 from liftopt.control.replanning import Replanner
-from liftopt.scenario.model import Refine, load_scenario
+from liftopt.scenario.model import load_scenario
+from liftopt.scenario.settings import Refine
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.mesh_accuracy import compared, distance, unmet
@@ -110,7 +111,7 @@ def test_the_finer_mesh_is_also_solved_afresh_and_the_better_kept(coarse: Candid
     assert found is not None and found.best.solved
     best = found.best
     names = [record.name for record in session.records]
-    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, afresh on 40, N = 40"]
+    assert names == [f"{coarse.start}, N = 40"] * 2 + [f"{coarse.start}, without multipliers on 40, N = 40"]
     assert best.origin is coarse and len(found.others) == len({round(p.result.objective, 2) for p in found.others})
     x = transfer(coarse.problem, coarse.spline, coarse.result.x, best.problem, best.spline)
     cold = session.solvers(best.problem)[0].solve(x, deadline=NEVER, problem=best.problem, incumbent=best.result)

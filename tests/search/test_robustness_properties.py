@@ -24,7 +24,7 @@ from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario, scenario_from_dict
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
 from liftopt.storage.urdf_check import check_urdf
@@ -92,7 +92,7 @@ def test_any_motion_of_any_scenario_is_read_back_as_it_was_written(
 
 
 def test_the_knots_of_a_finer_grid_are_the_knots(pattern: Solution) -> None:
-    fine = refined(pattern, 4)
+    fine = resample(pattern, 4)
     np.testing.assert_array_equal(fine.time[::4], pattern.time)
     for agent, was in zip(fine.agents, pattern.agents, strict=True):
         np.testing.assert_allclose(agent.q[::4], was.q, atol=1e-12)

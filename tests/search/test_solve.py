@@ -13,7 +13,7 @@ import xarray as xr
 
 from liftopt.commands.cli import main
 from liftopt.scenario.model import load_scenario
-from liftopt.search.optimum_on_mesh import AFRESH
+from liftopt.search.optimum_on_mesh import WITHOUT_MULTIPLIERS
 from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
 
@@ -36,10 +36,12 @@ def test_best_of_the_starts_is_kept_and_all_are_told(solved: Callable[..., Any])
     solution = solved("table5").solution
     assert solution.kept_start in {start.name for start in solution.starts}
     tried = " variations on 10 intervals led to"
-    taken = sum(AFRESH not in start.name for start in solution.starts)
+    taken = sum(WITHOUT_MULTIPLIERS not in start.name for start in solution.starts)
     assert any(tried in note and note.endswith(f"the best {taken} were taken to 20") for note in solution.notes)
     assert taken == len(solution.starts) - 1
-    converged = {s.name: s.objective for s in solution.starts if s.status == "converged" and AFRESH not in s.name}
+    converged = {
+        s.name: s.objective for s in solution.starts if s.status == "converged" and WITHOUT_MULTIPLIERS not in s.name
+    }
     assert converged[solution.kept_start] == min(converged.values())
     assert solution.objective == pytest.approx(min(converged.values()), rel=1e-9)
 
@@ -79,7 +81,7 @@ def test_papers_own_problem_solves_and_is_verified(solved: Callable[..., Any]) -
 
 def test_an_agent_without_weight_takes_the_load_off_the_other(solved: Callable[..., Any]) -> None:
     free = {
-        who: solved("table5", f"objective.{who}_weight=0", "solver.starts=1").solution.objective_terms
+        who: solved("table5", f"{who}.weight=0", "solver.starts=1").solution.objective_terms
         for who in ("human", "robot")
     }
     assert free["robot"]["human"] < free["human"]["human"]
@@ -108,7 +110,7 @@ def test_coarse_mesh_is_refined_and_that_is_said(solved: Callable[..., Any]) -> 
     assert solution.intervals in (20, 40)
     assert len(solution.time) == solution.intervals + 1
     last = f", N = {solution.intervals}"
-    names = [f"posture pair 1{last}", f"posture pair 1{AFRESH}{solution.intervals}{last}"]
+    names = [f"posture pair 1{last}", f"posture pair 1{WITHOUT_MULTIPLIERS}{solution.intervals}{last}"]
     assert [start.name for start in solution.starts[-2:]] == names and solution.kept_start in names
     assert any(note.startswith("mesh refined from N = 10 to 20: closure between knots was") for note in solution.notes)
 

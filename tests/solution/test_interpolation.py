@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liftopt.solution.interpolation import motion_between, refined
+from liftopt.solution.interpolation import motion_between, resample
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 
@@ -30,7 +30,7 @@ def test_a_cubic_comes_back_exactly() -> None:
 
 
 def test_finer_grid_shows_the_closure_that_the_verification_found_on_the_solvers_spline(solution: Any) -> None:
-    dense = refined(solution, 10)
+    dense = resample(solution, 10)
     gaps = [
         np.linalg.norm(agent.grasp_position - dense.object.grasp_position[:, i], axis=1).max()
         for i, agent in enumerate(dense.agents)
@@ -40,7 +40,7 @@ def test_finer_grid_shows_the_closure_that_the_verification_found_on_the_solvers
 
 
 def test_knots_stay_what_they_were(solution: Any) -> None:
-    dense = refined(solution, 4)
+    dense = resample(solution, 4)
     np.testing.assert_allclose(dense.time[::4], solution.time, atol=1e-15)
     for fine, coarse in zip(dense.agents, solution.agents, strict=True):
         for name in ("q", "v", "a", "tau", "grasp_force"):

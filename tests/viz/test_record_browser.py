@@ -19,6 +19,7 @@ from liftopt.lab.forces.record_server import RecordServer
 from liftopt.lab.forces.record_session import PRELOAD_READINGS, RecordSession
 from liftopt.lab.forces.serial_device import SerialDevice
 from liftopt.lab.forces.voltage_divider import Divider
+from liftopt.types import Progress
 
 SIX = ("finger1", "finger2", "finger3", "finger4", "thumb1", "thumb2")
 CALIBRATION = Calibration(divider=Divider(), curves={"all": Curve(voltage=(0.0, 1.0, 4.0), force=(0.0, 2.0, 8.0))})
@@ -28,7 +29,7 @@ class Laboratory(NamedTuple):
     """The page in the browser and what stands behind it."""
 
     opened: Any
-    print_line: Callable[[str], None]
+    print_line: Progress
     unplug: Callable[[], None]
     leave: Callable[[], None]
     file: Path

@@ -18,16 +18,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, kernels_for_simd
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import PRUNED, STOPPED, Multipliers, SolverResult
 from liftopt.errors import SolverError
+from liftopt.types import Array, Progress
 
-Array = npt.NDArray[np.float64]
 # The verification recomputes the same error by Pinocchio, whose rounding differs: what converged must stay so there.
 SAFETY = 0.9
 SOLVED = "Solve_Succeeded"

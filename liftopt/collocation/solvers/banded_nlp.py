@@ -10,12 +10,10 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.assembly import Nlp
-from liftopt.collocation.codegen.kernels import Progress
 from liftopt.collocation.codegen.simd_kernels import SimdKernel, load_simd_kernels
 from liftopt.collocation.problem import Problem, kernel_requests
 from liftopt.errors import SolverError
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array, Progress
 
 
 def kernels_for_simd(problem: Problem, progress: Progress | None = None) -> list[SimdKernel] | None:

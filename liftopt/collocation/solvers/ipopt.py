@@ -13,7 +13,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.assembly import Nlp
 from liftopt.collocation.codegen.simd_kernels import SimdKernel
@@ -22,8 +21,8 @@ from liftopt.collocation.solvers.deadline import NEVER, Deadline
 from liftopt.collocation.solvers.result import STOPPED, Multipliers, SolverResult
 from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.errors import SolverError
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # IPOPT measures errors of the scaled objective and relaxes them by averages over other multipliers than we do. With
 # this factor the KKT error stays below the tolerance; a smaller one costs iterations (docs/tuning.md).
 SAFETY = 0.5

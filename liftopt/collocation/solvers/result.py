@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-import numpy.typing as npt
-
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
 # Of a solver that was given an incumbent: no failure, but not worth going on.

@@ -21,8 +21,8 @@ from liftopt.collocation.assembly import Nlp, to_sparsity
 from liftopt.collocation.codegen.simd_kernels import SimdKernel
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.scatter import hessian_pattern, jacobian_pattern
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 Buffers = Sequence[Any]
 ALIGNMENT = 64

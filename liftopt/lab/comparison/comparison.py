@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 SAMPLES = 201  # of the normalised time: every 0.5 % of the lift
 # Percent of the lift. Sawyer's velocity mode is late by up to 1 / kp = 0.5 s, a quarter of a lift of 2 s.

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
@@ -20,10 +19,9 @@ from liftopt.multibody.joint_curves import ANATOMY, human_curves, robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.build import agent_of
-from liftopt.solution.interpolation import refined
+from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 FACTOR = 10  # as the plots
 NO_FORCE = "none given"  # how a recorded lift says that its hand was taken as empty
@@ -78,7 +76,7 @@ def experiment(
         raise InputError("RESULT", solution.status, "must be a solved and verified lift to be compared")
     if not (mocap or forces or robot):
         raise InputError("compare", NO_VALUE, "needs recordings: --mocap, --forces or --robot")
-    dense = refined(solution, FACTOR)
+    dense = resample(solution, FACTOR)
     notes: list[str] = []
     found = [
         *_person(dense, person, mocap, notes),

@@ -8,14 +8,12 @@ fit over the whole lift only says where to look: it would hide how late the arm 
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.robot.robot_record import SHORT, RobotRecord
 from liftopt.lab.robot.trajectory_files import GOAL_TOPIC
 from liftopt.solution.interpolation import linear
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 STEP = 0.01  # [s] between the starts that are tried
 MOVED = 0.005  # rad: farther than this from where it rested, the arm has begun to move

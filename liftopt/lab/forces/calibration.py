@@ -20,8 +20,8 @@ from liftopt.files.new_file import write_new
 from liftopt.files.section import Section
 from liftopt.lab.forces.calibration_series import ANY, DECIMALS, Series, mean_series, read_series
 from liftopt.lab.forces.voltage_divider import Divider
-from liftopt.lab.mocap.recording import Array
 from liftopt.lab.mocap.text_file import read_text
+from liftopt.types import Array
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -11,7 +11,7 @@ import numpy as np
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.forces.sensor_table import read_sensor_table
 from liftopt.lab.forces.voltage_divider import VOLTAGE_UNITS, Divider
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 GRAVITY = 9.81  # m/s^2, as in the models: what a scale shows in grams, as a force
 NEWTONS = {"N": 1.0, "kg": GRAVITY, "g": 1e-3 * GRAVITY}

@@ -24,7 +24,7 @@ from liftopt.lab.forces.force_record import (
 )
 from liftopt.lab.forces.sensor_table import SIGNATURE, SensorTable, read_sensor_table
 from liftopt.lab.forces.voltage_divider import VOLTAGE_UNITS
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 Mark = tuple[str, int]
 SECONDS = {"s": 1.0, "ms": 1e-3}

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.forces.calibration import Calibration
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 Flags = npt.NDArray[np.uint8]
 

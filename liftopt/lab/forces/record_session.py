@@ -15,7 +15,7 @@ from liftopt.lab.forces.force_record import hand_force, sensor_forces
 from liftopt.lab.forces.record_log import RecordLog
 from liftopt.lab.forces.sensor_lines import Aside, Connection, Garbage, Reading
 from liftopt.lab.forces.serial_device import SerialDevice
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 PRELOAD_READINGS = 10  # about 3 s at the rate of the paper's Arduino
 SHOWN = 2000  # readings kept for the page, 10 minutes at that rate

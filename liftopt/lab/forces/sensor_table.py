@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.mocap.recording import Array
 from liftopt.lab.mocap.text_file import Line, check_decimals, text_lines
+from liftopt.types import Array
 
 WORDS = ("mark", "series", "channel", "flags")  # columns of words; all others hold numbers and state their unit
 SIGNATURE = "# liftopt"  # first words of the files that liftopt writes: every line of theirs ends with a newline

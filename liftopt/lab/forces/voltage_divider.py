@@ -10,7 +10,7 @@ import numpy.typing as npt
 from liftopt.errors import InputError
 from liftopt.files.entries import number, whole
 from liftopt.files.section import Section
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 VOLTAGE_UNITS = ("V", "mV", "counts")
 

@@ -12,8 +12,7 @@ from liftopt.lab.mocap.marker_map import TRACKED, Labels, MarkerMap
 from liftopt.lab.mocap.recording import TO_Z_UP, Recording
 from liftopt.lab.mocap.rigid import FEWEST, Poses, common_point, fit_poses, mean_shape, were_seen
 from liftopt.lab.mocap.wrist_centre import with_wrist
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 # Shoulder centre below the acromion over the breadth between the acromia: Rab, Petuskey & Bagley (2002), Gait Posture
 # 15:113-119. Used where the arm moves too little to find its centre of rotation.

@@ -21,7 +21,8 @@ from liftopt.lab.mocap.c3d_frames import (
 )
 from liftopt.lab.mocap.c3d_parameters import BLOCK, C3dHeader, C3dParameters, parameter_start, read_header
 from liftopt.lab.mocap.c3d_plates import force_plates
-from liftopt.lab.mocap.recording import TO_Z_UP, AnalogChannels, Array, ForcePlate, Recording, checked_recording
+from liftopt.lab.mocap.recording import TO_Z_UP, AnalogChannels, ForcePlate, Recording, checked_recording
+from liftopt.types import Array
 
 LARGEST_FILE = 2**31  # bytes; an hour of 60 markers at 100 Hz and 16 channels at 1000 Hz is a sixth of it
 

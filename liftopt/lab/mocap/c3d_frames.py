@@ -8,7 +8,7 @@ import numpy as np
 
 from liftopt.errors import InputError
 from liftopt.lab.mocap.c3d_parameters import BLOCK, MIPS, C3dHeader, C3dParameters, floats, parameter_start
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 LAST_COUNTED = 65535  # frames: where the 16 bits of the header end
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 BLOCK = 512  # bytes
 INTEL, DEC, MIPS = 84, 85, 86  # what the fourth byte of the parameter section says of the processor

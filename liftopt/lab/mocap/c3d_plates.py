@@ -6,7 +6,8 @@ import numpy as np
 
 from liftopt.lab.mocap.c3d_parameters import C3dParameters
 from liftopt.lab.mocap.length_units import metres_of
-from liftopt.lab.mocap.recording import AnalogChannels, Array, ForcePlate
+from liftopt.lab.mocap.recording import AnalogChannels, ForcePlate
+from liftopt.types import Array
 
 CHANNELS = {1: 6, 2: 6, 3: 8, 4: 6}  # of a plate of each type
 

@@ -7,7 +7,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from liftopt.errors import InputError
 from liftopt.lab.mocap.gaps import runs
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 ORDER = 2  # of one pass; both make it the fourth
 SHORTEST = 10  # samples; the filter's transient is mirrored at both ends of a stretch

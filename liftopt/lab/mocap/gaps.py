@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import make_lsq_spline
 
-from liftopt.lab.mocap.recording import Array, Recording
+from liftopt.lab.mocap.recording import Recording
 from liftopt.lab.mocap.rigid import FEWEST, fit_poses, were_seen
+from liftopt.types import Array
 
 LONGEST_SPLINE = 0.1  # s; at 6 Hz, the cut-off used for lifting, a little over half a period
 LONGEST_OF_OBJECT = 0.2  # s; nothing else shows where it is, and it goes more smoothly than a limb

@@ -13,8 +13,9 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.forces.force_file import SECONDS, read_forces
 from liftopt.lab.forces.sensor_table import SIGNATURE
 from liftopt.lab.mocap.motion_table import read_motion_table
-from liftopt.lab.mocap.recording import TO_Z_UP, Array
+from liftopt.lab.mocap.recording import TO_Z_UP
 from liftopt.lab.mocap.text_file import Line, read_lines
+from liftopt.types import Array
 
 COLUMNS = ("time", "fx", "fy", "fz")
 UNITS: dict[str, dict[str, float]] = {"time": SECONDS} | {name: {"N": 1.0, "kN": 1000.0} for name in COLUMNS[1:]}

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.lab.mocap.gaps import runs
-from liftopt.lab.mocap.recording import Array
 from liftopt.lab.mocap.rigid import were_seen
+from liftopt.types import Array
 
 Flags = npt.NDArray[np.bool_]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.mocap.recording import Array
 from liftopt.lab.mocap.text_file import check_rising, contradictions, number_table, read_lines
+from liftopt.types import Array
 
 WHAT = "a MOT or STO file"
 

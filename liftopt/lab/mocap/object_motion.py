@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.gaps import runs
-from liftopt.lab.mocap.rigid import Array, fit_poses, mean_shape, were_seen
+from liftopt.lab.mocap.rigid import fit_poses, mean_shape, were_seen
+from liftopt.types import Array
 
 AT_REST = 0.005  # m; nearer than this to where it lay, the object has not been lifted yet, or lies again
 AT_PLACE = 0.1  # s that it stays there at least, or it passes by

@@ -16,8 +16,9 @@ from scipy.ndimage import binary_closing
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.gaps import runs
 from liftopt.lab.mocap.marker_path import aside_of, jumps_of, pieces_of
-from liftopt.lab.mocap.recording import Array, Recording
+from liftopt.lab.mocap.recording import Recording
 from liftopt.lab.mocap.rigid import were_seen
+from liftopt.types import Array
 
 Flags = npt.NDArray[np.bool_]
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.mocap.anatomy import Array, skeleton
+from liftopt.lab.mocap.anatomy import skeleton
 from liftopt.lab.mocap.c3d import read_c3d
 from liftopt.lab.mocap.filtering import low_pass
 from liftopt.lab.mocap.findings import findings
@@ -37,6 +37,7 @@ from liftopt.multibody.person.anthropometry import LinkLengths
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.solution.interpolation import linear
+from liftopt.types import Array
 
 CUTOFF = 6.0  # Hz, of markers and angles together
 SHOULDER_TRAVEL = 0.1  # m that the acromion may come nearer to a marker of the trunk

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from liftopt.lab.mocap.anatomy import Array, Skeleton
+from liftopt.lab.mocap.anatomy import Skeleton
 from liftopt.lab.mocap.recording import Recording
 from liftopt.lab.mocap.scaling import ScaledSubject, measured_chain
 from liftopt.lab.mocap.tracking import TrackedMarker
@@ -23,6 +23,7 @@ from liftopt.multibody.person.human import (
 )
 from liftopt.multibody.person.range_of_motion import RANGES
 from liftopt.multibody.urdf import HELD, joint_name, load_model
+from liftopt.types import Array
 
 # How far the base of the spine may move from where it is while standing [m], and how fast [m/s]: to squat and to walk.
 BASE_TRAVEL, BASE_SPEED = 20.0, 5.0

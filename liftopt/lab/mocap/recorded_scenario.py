@@ -22,12 +22,12 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.mocap.anatomy import Array
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.person.human import NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name, load_model
 from liftopt.scenario.model import Scenario, scenario_from_dict
+from liftopt.types import Array
 
 REACH = 0.85  # m from the robot's base to its grasp: comfortable for Sawyer
 LEVEL = 1.0  # deg that the object may tilt

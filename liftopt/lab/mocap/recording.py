@@ -6,12 +6,10 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.length_units import METRES, metres_of
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 LARGEST_ROOM = 1000.0  # m
 SENTINEL = 1e15  # beyond any place in any unit: NDI systems write -3.697314e28 for a marker that was not seen

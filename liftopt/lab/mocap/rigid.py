@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 FEWEST = 3  # markers that make a pose
 ROUNDS = 20  # of the mean shape; it moves by less than a micrometre after ten

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.mocap.anatomy import Array, Skeleton
+from liftopt.lab.mocap.anatomy import Skeleton
 from liftopt.lab.mocap.marker_map import MarkerMap
 from liftopt.lab.mocap.rigid import were_seen
 from liftopt.multibody.dh import BodyInertia, DHChain, human_rows
@@ -15,6 +15,7 @@ from liftopt.multibody.person.anthropometry import DIMENSIONS, LinkLengths, link
 from liftopt.multibody.person.human import NAME, human_chain
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Sex, Subject
+from liftopt.types import Array
 
 # Hip joint centres below the front spines of the pelvis, over the distance of these: Bell, Pedersen & Brand (1990),
 # J Biomech 23:617-621.

@@ -12,7 +12,7 @@ import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.bounded_read import read_regular
-from liftopt.lab.mocap.recording import Array
+from liftopt.types import Array
 
 LARGEST_FILE = 500_000_000  # bytes; an hour of 60 markers at 100 Hz in a TRC file
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")

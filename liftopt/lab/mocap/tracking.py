@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 # Levenberg-Marquardt: damping in m^2/rad^2. The least one keeps directions that no marker determines (a singular
 # shoulder) where they were; of the others it takes less than a thousandth off a step.

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.mocap.recording import Array, Recording, checked_recording
+from liftopt.lab.mocap.recording import Recording, checked_recording
 from liftopt.lab.mocap.text_file import Line, check_rising, contradictions, number_of, number_table, read_lines
+from liftopt.types import Array
 
 WHAT = "a TRC file"
 OFF_GRID = 0.15  # frames; further from the frame grid than this a time stamp is wrong, for all its few digits

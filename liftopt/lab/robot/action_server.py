@@ -18,12 +18,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.lab.robot.joint_trajectory import JointTrajectory
 from liftopt.multibody.robots.sawyer import sawyer_limits
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 Mode = Literal["velocity", "position", "position_w_id", "torque"]
 
 PERIOD = 0.01  # [s]: -r 100

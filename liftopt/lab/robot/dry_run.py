@@ -9,11 +9,9 @@ hand is led off its path by what the gripper is off.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import ModelError
 from liftopt.lab.meant import the_robot
@@ -23,8 +21,8 @@ from liftopt.lab.robot.joint_trajectory import JointTrajectory, joint_trajectory
 from liftopt.lab.robot.simulated_arm import STEP, SimulatedArm
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.solution import Solution
+from liftopt.types import Array, Progress
 
-Array = npt.NDArray[np.float64]
 BEFORE, AFTER = 0.5, 0.5  # recorded before the goal is sent and after the server is done [s]
 TICKS = round(PERIOD / STEP)
 RUNAWAY = 50.0  # [rad/s]: ten times what a joint can do; MuJoCo itself would start again at its own zero
@@ -93,7 +91,7 @@ def dry_run(
     goal_time: float,
     trials: int = 3,
     seed: int = 0,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress | None = None,
     robot: str | None = None,
 ) -> DryRun:
     """Simulate the action server and the arm; the same arguments give the same numbers.

@@ -10,17 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.lab.meant import the_robot
 from liftopt.lab.robot.simulated_arm import STEP
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory, cross
 from liftopt.scenario.build import agent_of, object_of
-from liftopt.solution.interpolation import linear, refined
+from liftopt.solution.interpolation import linear, resample
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 AHEAD = 0.1  # [s]: how far along the plan an arm is sought from where it was a tick before
 AT_ONCE = 1e-6  # [s] between rest and motion
 
@@ -57,7 +56,7 @@ class Plan:
             InputError: no robot is the one that is meant.
         """
         interval = float(solution.time[1] - solution.time[0])
-        dense = refined(solution, max(1, round(interval / STEP / 2)))
+        dense = resample(solution, max(1, round(interval / STEP / 2)))
         arm = the_robot(dense, robot)
         force, moment, torque = -arm.grasp_force, -arm.grasp_moment, JOINT_SIGNS * arm.tau[:, arm.moving]
         before, after = (_at_rest(dense, arm, k) for k in (0, -1))

@@ -7,7 +7,6 @@ from io import StringIO
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.lab.robot.action_server import SPEED_RATIO
 from liftopt.lab.robot.dry_run import DryRun
@@ -15,8 +14,8 @@ from liftopt.multibody.robots.sawyer import sawyer_limits
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import grasp_points
 from liftopt.solution.interpolation import linear
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 LATEST = 1.5  # [s]: delays are sought up to this
 PATH_STEPS = 20  # points between two of the plan's, for the distance from its path
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import InputError
 from liftopt.lab.meant import the_robot
@@ -13,8 +12,8 @@ from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 # Sawyer's own, base to flange; Q1 to Q7 of Table 3 in this order, the fourth with the other sign (JOINT_SIGNS).
 JOINTS = tuple(f"right_j{i}" for i in range(7))
 RATE = 100.0  # of the action server [Hz]

@@ -10,7 +10,6 @@ import re
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.meant import the_robot
@@ -19,8 +18,8 @@ from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_tr
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS, sawyer_limits
 from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 ROUNDING = 1e-6  # [rad, rad/s, Nm]: as far as the solver may leave a limit
 # The server refuses a first point farther from the arm than its path tolerance, a negative one without the sign: in
 # velocity mode it is -1 [rad]. In both position modes it gives up at once where the arm is as far off as allowed.

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.extra import check_extra
@@ -22,8 +21,7 @@ from liftopt.lab.robot.ros_messages import FEEDBACK, JOINT_STATE, LOG, ROS1_GOAL
 from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.interpolation import linear
-
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
 
 COMMANDS = (TRAJECTORY, ROS1_GOAL, ROS2_GOAL)
 LARGEST = 1e4  # rad and Nm; no joint turns so far nor pushes so hard

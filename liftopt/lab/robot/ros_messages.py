@@ -11,12 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.lab.extra import check_extra
 from liftopt.lab.robot.joint_trajectory import JointTrajectory
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 SECOND = 1_000_000_000  # [ns]
 
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"

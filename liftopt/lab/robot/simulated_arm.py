@@ -19,13 +19,12 @@ and by 16 to 51 mm in position_w_id mode, where they do: an order of magnitude.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.lab.meant import the_robot
 from liftopt.multibody.mujoco_model import import_mujoco, spec_of
 from liftopt.solution.solution import Solution
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 STEP = 1e-3  # [s]: the arm's motor loop runs at 1 kHz (manufacturer's page "Arm Control Systems")
 # sawyer_simulator, commit 156bf12, sawyer_sim_controllers.yaml: position controllers [Nm/rad, Nm s/rad] (Apache-2.0).
 STIFFNESS = np.array([500.0, 400.0, 250.0, 300.0, 300.0, 100.0, 50.0])

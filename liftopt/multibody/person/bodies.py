@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from liftopt.multibody.dh import Array, BodyInertia
+from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.person.anthropometry import (
     HEEL_BEHIND_ANKLE,
     HIP_JOINT_SPREAD,
@@ -15,6 +15,7 @@ from liftopt.multibody.person.anthropometry import (
 from liftopt.multibody.person.segments import SEGMENTS, hanging_segment, standing_foot
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.sources import DE_LEVA_ON_ANSUR, Source
+from liftopt.types import Array
 
 BODY_SOURCE: Source = DE_LEVA_ON_ANSUR
 RIGHT, LEFT = -1.0, 1.0

@@ -8,14 +8,7 @@ from math import radians
 import numpy as np
 
 from liftopt.multibody.agent import Agent, HalfSpace, JointLimits
-from liftopt.multibody.dh import (
-    ROTATION_WORLD_PAPER,
-    Array,
-    BodyInertia,
-    DHChain,
-    frame_transforms,
-    human_rows,
-)
+from liftopt.multibody.dh import ROTATION_WORLD_PAPER, BodyInertia, DHChain, frame_transforms, human_rows
 from liftopt.multibody.person.anthropometry import link_lengths
 from liftopt.multibody.person.bodies import human_bodies
 from liftopt.multibody.person.human_shapes import human_shapes
@@ -35,6 +28,7 @@ from liftopt.multibody.urdf import (
     shapes_on_links,
     urdf_text,
 )
+from liftopt.types import Array
 
 __all__ = ["Subject", "human_agent", "human_chain", "human_limits", "human_root"]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from liftopt.multibody.dh import Array
 from liftopt.multibody.person.anthropometry import (
     HEEL_BEHIND_ANKLE,
     HIP_JOINT_SPREAD,
@@ -17,6 +16,7 @@ from liftopt.multibody.person.bodies import LEFT, RIGHT
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.shapes import Box, Capsule, Colour, Shape, box_at
+from liftopt.types import Array
 
 SKIN = Colour("skin", (0.87, 0.68, 0.55, 1.0))
 SHIRT = Colour("shirt", (0.20, 0.42, 0.66, 1.0))

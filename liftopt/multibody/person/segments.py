@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.multibody.dh import Array, BodyInertia
+from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.person.subject import Sex, Subject
 from liftopt.multibody.sources import DE_LEVA_1996, Source
+from liftopt.types import Array
 
 SOURCE: Source = DE_LEVA_1996
 

@@ -8,7 +8,6 @@ from liftopt.multibody.agent import Agent, JointLimits
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.dh import (
     ROTATION_WORLD_PAPER,
-    Array,
     BodyInertia,
     DHChain,
     frame_transforms,
@@ -32,6 +31,7 @@ from liftopt.multibody.urdf import (
     shapes_on_links,
     urdf_text,
 )
+from liftopt.types import Array
 
 NAME = "robot"
 VIRTUAL, MOVING = ("GT1", "GT2", "GT3"), ("Q1", "Q2", "Q3", "Q4", "Q5", "Q6", "Q7")

@@ -10,8 +10,9 @@ from functools import reduce
 
 import numpy as np
 
-from liftopt.multibody.dh import Array, BodyInertia, rotation_x, rotation_z, translation
+from liftopt.multibody.dh import BodyInertia, rotation_x, rotation_z, translation
 from liftopt.multibody.sources import RETHINK, Source
+from liftopt.types import Array
 
 SOURCE: Source = RETHINK
 PAYLOAD = 4.0  # kg, gripper included; the description has none

@@ -21,6 +21,7 @@ from liftopt.collocation.codegen.kernel_cache import cache_folder
 from liftopt.collocation.codegen.kernels import ROLES, Kernel, find_compiler, load_kernels
 from liftopt.collocation.dynamics import KnotFunctions, Topology, agent_functions
 from liftopt.files.checksum import DIGEST_BYTES
+from liftopt.types import Progress
 
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler on this machine")
 
@@ -37,7 +38,7 @@ def tiny_topology() -> Topology:
     return Topology.of(model, ("tip",))
 
 
-def load_tiny(progress: Callable[[str], None] | None = None) -> Kernel:
+def load_tiny(progress: Progress | None = None) -> Kernel:
     return load_kernels([(agent_functions, tiny_topology())], progress)[0]
 
 

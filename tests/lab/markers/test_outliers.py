@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from liftopt.errors import InputError
@@ -15,8 +14,8 @@ from liftopt.lab.mocap.marker_map import load_marker_map, mapped_markers
 from liftopt.lab.mocap.outliers import ShapeGroup, without_far_points, without_outliers
 from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, read_recording, recorded_lift
 from liftopt.lab.mocap.recording import in_metres
+from liftopt.types import Array
 
-Array = npt.NDArray[np.float64]
 LOAD = Load(mass=6.0)
 LITTLE = 0.03  # of a peak torque, and of 5 Nm where it is smaller
 
