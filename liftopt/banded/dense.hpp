@@ -19,8 +19,8 @@ struct DenseOperations {
   void (*multiply_triangular)(double* c, int ldc, const double* a, int lda, const double* l, int ldl, int rows,
                               int n);
 
-  // C (rows x columns) = D - A B^T, A (rows x depth), B (columns x depth); rows and columns padded, depth not. D has C's
-  // columns as far apart, and may be C.
+  // C (rows x columns) = D - A B^T, A (rows x depth), B (columns x depth); rows and columns padded, depth not. The
+  // columns of D are as far apart as those of C, which may be D.
   void (*subtract_product)(double* c, int ldc, const double* d, const double* a, int lda, const double* b, int ldb,
                            int rows, int columns, int depth);
 

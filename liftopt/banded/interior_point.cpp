@@ -24,7 +24,8 @@ constexpr double kAtBounds = 0.2;
 
 }  // namespace
 
-InteriorPoint::InteriorPoint(Nlp& nlp, std::vector<std::vector<int>> blocks) : nlp_(nlp), newton_(nlp, std::move(blocks)) {
+InteriorPoint::InteriorPoint(Nlp& nlp, std::vector<std::vector<int>> blocks)
+    : nlp_(nlp), newton_(nlp, std::move(blocks)) {
   const int n = nlp.unknowns(), m = nlp.rows();
   for (Vector* v : {&lagrangian_, &sigma_x_, &right_}) v->resize(n);
   for (Vector* v : {&lambda_, &residual_, &sigma_s_, &centre_, &ds_, &dlambda_, &rows_}) v->resize(m);
