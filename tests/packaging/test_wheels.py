@@ -123,7 +123,8 @@ def test_the_viewer_and_its_licences_are_inside(wheels: Path) -> None:
         assert base64.urlsafe_b64encode(hashlib.new(kind, content).digest()).decode().rstrip("=") == digest
         (metadata,) = (name for name in file.namelist() if name.endswith(".dist-info/METADATA"))
         folder = metadata.replace("METADATA", "licenses/")
-        licences = {name.removeprefix(folder) for name in file.namelist() if name.startswith(folder) and name[-1] != "/"}
+        names = [name for name in file.namelist() if not name.endswith("/")]
+        licences = {name.removeprefix(folder) for name in names if name.startswith(folder)}
         expression = re.search(r"^License-Expression: (.*)$", file.read(metadata).decode(), re.MULTILINE)
     assert expression is not None
     assert set(expression[1].split(" AND ")) == {"BSD-3-Clause", "MIT", "Apache-2.0"}
