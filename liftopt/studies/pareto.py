@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.assessment.who import Who
+from liftopt.assessment.who import Who, who_in
 from liftopt.collocation.motion import objective_terms
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError
@@ -239,6 +239,4 @@ def ratio_text(weights: tuple[float, float]) -> str:
 
 def who_of(front: Front, name: str) -> Who:
     """Return how one of the front's scenario is told."""
-    agents = front.scenario.agents
-    kinds = [agent.kind for agent in agents.values()]
-    return Who(agents[name].kind, name, kinds.count(agents[name].kind) == 1)
+    return who_in(front.scenario.agents, name)

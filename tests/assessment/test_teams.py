@@ -87,6 +87,14 @@ def test_the_terminal_tells_everybody_under_their_name(people: Solution, robots:
     assert max(map(len, text.splitlines())) <= 80
 
 
+def test_the_distance_told_is_that_of_the_two_who_face_each_other(robots: Solution) -> None:
+    """The human at the origin, the robot near where the scenario puts it: 1.75 m ahead and 0.55 m to the side."""
+    apart = np.hypot(1.75, 0.55)
+    assert f"human and near standing {apart:.3f} m apart" in " ".join(verdict_text(robots, None).split())
+    moved = replace(robots, scenario=robots.scenario.replace({"near.base.y": 0.0, "near.base.x": 1.5}))
+    assert "human and near standing 1.5 m apart" in " ".join(verdict_text(moved, None).split())
+
+
 def test_hands_of_three_work_against_each_other(robots: Solution) -> None:
     """A push of two against the third, put on top, is in the finding by as much."""
     push = np.zeros((3, 3))
