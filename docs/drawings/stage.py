@@ -51,11 +51,13 @@ def default_result() -> Path:
 def bodies() -> dict[str, Body]:
     """Return person, robot and object of the default lift by name."""
     solution = default_lift()
-    held = object_of(solution.scenario, solution.urdfs)
+    lifted = object_of(solution.scenario, solution.urdfs)
     poses = np.hstack([solution.object.pose[:, :3], solution.object.quaternion])
     pairs = zip(agents(), solution.agents, strict=True)
     found = [Body(agent.name, agent.model, _shapes(agent.model, agent.urdf), motion.q) for agent, motion in pairs]
-    return {body.name: body for body in [*found, Body(held.name, held.model, _shapes(held.model, held.urdf), poses)]}
+    return {
+        body.name: body for body in [*found, Body(lifted.name, lifted.model, _shapes(lifted.model, lifted.urdf), poses)]
+    }
 
 
 @cache

@@ -203,11 +203,11 @@ def solved(ipopt: Ipopt, starts: list[InitialGuess]) -> SolverResult:
 @pytest.fixture(scope="session")
 def arm_team(make_arm: Callable[..., Agent]) -> Team:
     """Return two random arms that hold a box, on CasADi's virtual machine, which alone can differentiate itself."""
-    held = box(np.array([[-0.3, 0.02, -0.05], [0.25, 0.02, -0.05]]))
+    lifted = box(np.array([[-0.3, 0.02, -0.05], [0.25, 0.02, -0.05]]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CC", "")
         patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
-        return Team.of((make_arm(1), make_arm(2, "other")), held)
+        return Team.of((make_arm(1), make_arm(2, "other")), lifted)
 
 
 @pytest.fixture(scope="session")
@@ -220,7 +220,10 @@ def knot_functions(
     for name, agent in (("human", human), ("sawyer", sawyer), ("arm", arm)):
         topology = Topology.of(agent.reduced(), (agent.grasp_frame,))
         built[name] = (topology.model, topology, agent_functions(topology))
-    for name, held in (("table", table), ("box", box(np.array([[-0.3, 0.1, 0.0], [0.2, 0.1, -0.1], [0, -0.2, 0.1]])))):
-        topology = Topology.of(held.model, held.grasp_frames)
+    for name, lifted in (
+        ("table", table),
+        ("box", box(np.array([[-0.3, 0.1, 0.0], [0.2, 0.1, -0.1], [0, -0.2, 0.1]]))),
+    ):
+        topology = Topology.of(lifted.model, lifted.grasp_frames)
         built[name] = (topology.model, topology, object_functions(topology))
     return built

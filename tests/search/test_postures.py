@@ -32,7 +32,7 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
     np.testing.assert_allclose(at[given], pose[given], atol=1e-9)
     turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", at[3:], strict=True)]
     rotation, first = turn[0] @ turn[1] @ turn[2], 0
-    held, moment = team.object.model, np.zeros(3)
+    lifted, moment = team.object.model, np.zeros(3)
     for i, agent in enumerate(team.agents):
         model, f = agent.reduced(), posture.force[3 * i : 3 * i + 3]
         q = posture.coordinates[first : first + model.nv]
@@ -44,7 +44,7 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
         assert (q >= limits.q_lower - 1e-9).all() and (q <= limits.q_upper + 1e-9).all()
         assert (tau >= limits.tau_lower - 1e-5).all() and (tau <= limits.tau_upper + 1e-5).all()
         pin.framesForwardKinematics(model, data, q)
-        lever = held.frames[held.getFrameId(team.object.grasp_frames[i])].placement.translation
+        lever = lifted.frames[lifted.getFrameId(team.object.grasp_frames[i])].placement.translation
         np.testing.assert_allclose(data.oMf[frame].translation, at[:3] + rotation @ lever, atol=1e-7)
         assert np.linalg.norm(f) <= task.max_grasp_force
         moment += np.cross(lever, rotation.T @ f)

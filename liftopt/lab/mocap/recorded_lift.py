@@ -204,8 +204,8 @@ def recorded_lift(
     scaled = scale_subject(found, mapping)
     person = recorded_person(smooth, found, scaled)
     # What may be refused comes before the motion is followed, which takes longest.
-    held, lost = _object(smooth, mapping, person, outliers, needed=load is not None and load.mass > 0.0)
-    force, force_from = _force(smooth.time, mapping, person, held, load or Load())
+    lifted, lost = _object(smooth, mapping, person, outliers, needed=load is not None and load.mass > 0.0)
+    force, force_from = _force(smooth.time, mapping, person, lifted, load or Load())
     agent, limits = person.agent, person.agent.limits
     motion = track(
         agent.model,
@@ -224,7 +224,7 @@ def recorded_lift(
         "elbow flexion of the model is off that between the joint centres of the markers "
         f"by {_rms(off):.1f} deg (rms), at most {np.nanmax(np.abs(off)):.1f}"
     )
-    lifts = tuple((float(smooth.time[i]), float(smooth.time[j])) for i, j in held.lifts) if held else ()
+    lifts = tuple((float(smooth.time[i]), float(smooth.time[j])) for i, j in lifted.lifts) if lifted else ()
     if len(lifts) > 1:
         times = ", ".join(f"{start:.2f} to {end:.2f} s" for start, end in lifts)
         notes.append(f"the object is lifted {len(lifts)} times, {times}; between these it lies. Choose one by --lift")
@@ -252,8 +252,8 @@ def recorded_lift(
         markers=tuple(marker.label for marker in person.markers),
         residual=motion.residual,
         elbow_flexion=found.elbow_flexion,
-        object_position=held.position if held else None,
-        object_quaternion=held.quaternion if held else None,
+        object_position=lifted.position if lifted else None,
+        object_quaternion=lifted.quaternion if lifted else None,
         carried=lifts[0] if len(lifts) == 1 else None,
         gaps=gaps,
         notes=tuple(notes),
@@ -302,11 +302,11 @@ def _object(
         return None, []
     points = recording.points[:, [recording.index(label) for label in labels]]
     try:
-        held = object_motion(recording.time, person.world.place(points), recording.source)
-        if not held.unseen.any():
-            return held, []
-        where = shown(recording, runs(held.unseen))
-        return held, [f"the object is out of sight in {where}: its place there is that before and after"]
+        lifted = object_motion(recording.time, person.world.place(points), recording.source)
+        if not lifted.unseen.any():
+            return lifted, []
+        where = shown(recording, runs(lifted.unseen))
+        return lifted, [f"the object is out of sight in {where}: its place there is that before and after"]
     except InputError as error:
         if needed:
             dropped = outlier_notes(recording, tuple(one for one in outliers if one.marker in labels))
@@ -315,22 +315,22 @@ def _object(
 
 
 def _force(
-    time: Array, mapping: MarkerMap, person: RecordedPerson, held: ObjectMotion | None, load: Load
+    time: Array, mapping: MarkerMap, person: RecordedPerson, lifted: ObjectMotion | None, load: Load
 ) -> tuple[Array, str]:
     if load.measured is not None:
         force, outside = load.measured.at(time)
-        load.measured.check_covers([(float(time[i]), float(time[j])) for i, j in held.lifts] if held else [])
+        load.measured.check_covers([(float(time[i]), float(time[j])) for i, j in lifted.lifts] if lifted else [])
         turn = person.world.rotation @ TO_Z_UP[mapping.up]
         covers = f", which has none for {outside} of {len(time)} frames (0 N there)" if outside else ""
         return force @ turn.T, f"measured: {load.measured.source}{covers}"
     if not load.mass:
         return np.zeros((len(time), 3)), "none given: the torques are those of the empty hand"
-    if held is None:
+    if lifted is None:
         raise InputError(
             "segments.object", NO_VALUE, "names no markers, so that the load cannot be told from its motion"
         )
     what = f"estimated: {load.share:.0%} of the force that moves {load.mass:g} kg as the object moved"
-    return load_force(held, load.mass, load.share), what
+    return load_force(lifted, load.mass, load.share), what
 
 
 def _plate_force(recording: Recording, person: RecordedPerson) -> Array | None:
