@@ -48,7 +48,7 @@ def person_joints() -> Figure:
     figure = Figure(figsize=(8.6, 6.6))
     panels = figure.subplots(2, 5)
     figure.subplots_adjust(left=0.01, right=0.99, top=0.86, bottom=0.02, wspace=0.08, hspace=0.36)
-    for axes, curve in zip(panels.flat, human_curves(solution.agents[0]), strict=True):
+    for axes, curve in zip(panels.flat, human_curves(solution["human"]), strict=True):
         sign = -1 if "\N{MINUS SIGN}" in curve.label else +1
         show(axes, person, _motion(curve.joint, sign), _title(curve, sign))
     figure.suptitle(
