@@ -101,7 +101,7 @@ def mesh_study(solution: Solution, meshes: Sequence[int] = MESHES, progress: Pro
     Args:
         solution: where to start; the problem is that of its scenario.
         meshes: numbers of intervals, each twice the one before.
-        progress: hears one line a mesh.
+        progress: called with one line for each mesh.
 
     Raises:
         SolverError: IPOPT cannot run.

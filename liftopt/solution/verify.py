@@ -56,7 +56,7 @@ def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64])
 
 
 def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
-    """Eq. 17 on the rows that the grasps serve; the other one, and all between knots, are reported."""
+    """Eq. 17 on the rows that the grasps serve; the other row, and all rows between knots, are only reported."""
     tolerance, team = problem.task.balance_tolerance, problem.team
     served = served_rows(team.agents, team.object, tolerance)
     moments = any(grasp.moments for grasp in team.grasps)
@@ -106,7 +106,7 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
 
 
 def _holds(motion: Motion, limit: float) -> list[Check]:
-    """What holds that transmit more than a force at a point keep to: moment, angle on the object, friction."""
+    """Limits of grasps that transmit more than a force at a point: moment, angle on the object, friction."""
     checks, rotation = [], attitude(motion.object.pose[:, 3:])[0]
     for agent in motion.agents:
         grasp, own = agent.grasp, [agent.name]
@@ -143,7 +143,7 @@ def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Ch
 
 
 def _objective(problem: Problem, motion: Motion, result: SolverResult) -> Check:
-    """The solver's objective against Pinocchio's torques: would show a wrong kernel."""
+    """The solver's objective against Pinocchio's torques: a wrong kernel would show here."""
     terms, weights = objective_terms(motion), objective_weights(problem)
     ours = sum(weights[name] * value for name, value in terms.items())
     error = abs(ours - result.objective) / max(1.0, abs(ours))

@@ -66,7 +66,7 @@ def load_result(path: str | Path) -> Solution:
 
 
 def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dict[str, str]:
-    """Return the models of a result, of which each was looked through; raises InputError."""
+    """Return the models of a result, each of them checked; raises InputError."""
     if SCENARIO_TEXT in attributes:
         urdfs = {
             name: str(attributes.get(f"{URDF_TEXT}{name}", "")) for name in (*scenario.agents, scenario.object.name)
