@@ -7,8 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drawings.stage import agents, arrow, bare, bodies, default_lift, paint_bodies
+from liftopt.types import Array
 from liftopt.viz.outlines import VIEWS
-from liftopt.viz.plots_style import BLUE, GREEN, INK, LIMIT, VERMILION, Array
+from liftopt.viz.plots_style import BLUE, GREEN, INK, LIMIT, VERMILION
 
 PER_NEWTON = 0.009  # length of a drawn force [m/N]
 AXES = (("x", VERMILION), ("y", GREEN), ("z", BLUE))

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from drawings.motions import Motion, show
 from drawings.stage import agents, bodies, default_lift
 from liftopt.multibody.joint_curves import JointCurve, human_curves
-from liftopt.viz.plots_style import Array
+from liftopt.types import Array
 
 
 class Look(NamedTuple):

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from drawings.motions import Motion, fill, show
 from drawings.stage import agents, bodies, default_lift, paint_bodies
 from liftopt.multibody.joint_curves import robot_curves
+from liftopt.types import Array
 from liftopt.viz.outlines import VIEWS
-from liftopt.viz.plots_style import BLUE, Array
+from liftopt.viz.plots_style import BLUE
 
 VIEW = {"Q1": "above", "Q3": "behind", "Q5": "behind", "Q7": "behind"}
 TURN_DEG = 35.0

@@ -17,8 +17,9 @@ from matplotlib.patches import FancyArrowPatch, Polygon
 
 import liftopt as lo
 from liftopt.scenario.build import agents_of, object_of
+from liftopt.types import Array
 from liftopt.viz.outlines import outlines
-from liftopt.viz.plots_style import INK, Array
+from liftopt.viz.plots_style import INK
 
 PALE = (0.86, 0.87, 0.89)
 Paint = Callable[[int, tuple[float, float, float]], tuple[float, float, float]]

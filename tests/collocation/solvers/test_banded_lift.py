@@ -126,7 +126,7 @@ def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., Li
 
 
 def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[InitialGuess]) -> None:
-    """As many iterations by the wide kernels and by CasADi's functions through Python, where both take Newton's matrix.
+    """As many iterations by the SIMD kernels and by CasADi's functions through Python, where both take Newton's matrix.
 
     That is near an optimum: elsewhere the one leaves out curvature, which the other cannot tell from the rest.
     """
