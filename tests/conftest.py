@@ -86,6 +86,20 @@ def team_solution(solved: Callable[..., Solved]) -> Callable[[str], Any]:
     return cache(lambda name: module.made(name, pattern))
 
 
+@pytest.fixture(scope="session")
+def people(team_solution: Callable[[str], Any]) -> Solution:
+    """Return the lift of anna and ben, by ``team_solution``."""
+    solution: Solution = team_solution("two_people").solution
+    return solution
+
+
+@pytest.fixture(scope="session")
+def robots(team_solution: Callable[[str], Any]) -> Solution:
+    """Return the lift of a human with the Sawyers near and far."""
+    solution: Solution = team_solution("two_robots").solution
+    return solution
+
+
 def level_task(agents: int = 2, x: float = 0.625, **changes: object) -> LiftTask:
     """Return a lift of a level object from a centre at 0.91 m to 1.41 m, as in Table 5."""
     task = LiftTask(
