@@ -68,6 +68,7 @@ class Instant:
     """Functions of y = (q, v, a, f, tau) at one instant: coordinates, rates, grasp forces, joint torques.
 
     Attributes:
+        coordinates: what moves.
         dynamics: y -> (n_joints,) torques less those that the motion and the grasp reaction need [Nm].
         balance: y -> (6,) force, world axes, and moment, body axes, that the object's motion needs, less what the
             grasps give [N, Nm].
