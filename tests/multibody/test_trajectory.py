@@ -122,7 +122,7 @@ def test_ground_reaction_is_whole_body_newton_euler(agent: Agent, rng: np.random
         np.testing.assert_allclose(found.ground_moment[k], moment, atol=1e-5)
 
 
-def test_ground_carries_the_weight_of_a_person_who_stands(rng: np.random.Generator) -> None:
+def test_ground_carries_the_weight_of_a_person_who_stands() -> None:
     """Closed form: at rest the ground bears body weight less what the grasp carries."""
     agent = AGENTS["human"]()
     q, zero = np.tile(agent.posture, (2, 1)), np.zeros((2, 10))

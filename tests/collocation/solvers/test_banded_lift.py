@@ -243,9 +243,7 @@ def test_objective_and_rows_agree_with_casadis(
         assert banded.objective(starts[0].x, problem) == found
 
 
-def test_kernels_need_no_assembled_problem(
-    team: Team, make_task: Callable[..., LiftTask], starts: list[InitialGuess]
-) -> None:
+def test_kernels_need_no_assembled_problem(team: Team, make_task: Callable[..., LiftTask]) -> None:
     """Neither the solver nor a solution touches the functions that CasADi would assemble."""
     problem = Problem(team, make_task(agent_weights=(1.0, 1.0)), RestToRestSpline(12).mesh())
     Banded(problem, BandedOptions(max_iterations=1)).solve(naive_guess(problem).x, deadline=NEVER)
