@@ -81,10 +81,10 @@ def _smallest(trials: _Trials, adjustable: Adjustable, hint: int, rest: float) -
         middle = (helps + fails) // 2
         nearer = trials.solve(adjustable, sign * middle, candidate)
         candidate, helps, fails = (nearer, middle, fails) if nearer else (candidate, helps, middle)
-    return _told(trials.scenario, adjustable, sign, candidate.scenario) if trials.verify(candidate) else None
+    return _suggested(trials.scenario, adjustable, sign, candidate.scenario) if trials.verify(candidate) else None
 
 
-def _told(scenario: Scenario, adjustable: Adjustable, sign: int, changed: Scenario) -> SuggestedChange:
+def _suggested(scenario: Scenario, adjustable: Adjustable, sign: int, changed: Scenario) -> SuggestedChange:
     """Return a change that helps, in words and by its size."""
     was, values = adjustable.values(scenario), adjustable.values(changed)
     change = abs(values[0] - was[0])
