@@ -6,9 +6,7 @@ import ast
 import inspect
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -88,7 +86,7 @@ def test_it_runs_as_written(tmp_path: Path) -> None:
     assert (tmp_path / "lift.html").stat().st_size > 0
 
 
-def test_a_replanner_gives_solutions_that_save(solved: Callable[..., Any], tmp_path: Path) -> None:
+def test_a_replanner_gives_solutions_that_save(tmp_path: Path) -> None:
     scenario = lo.load_scenario("table5", {"solver.intervals": 10, "solver.starts": 1})
     replanner = lo.Replanner()
     assert isinstance(replanner.solve(scenario), lo.Solution)
