@@ -111,7 +111,7 @@ class Banded:
         more: dict[str, Any] = {"max_iterations": most}
         if incumbent is not None:
             fewer = min(most, self._most_with(incumbent))
-            more = {"rival": incumbent.objective if incumbent.converged else np.inf, "max_iterations": fewer}
+            more = {"incumbent": incumbent.objective if incumbent.converged else np.inf, "max_iterations": fewer}
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:
