@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from shlex import quote
@@ -11,7 +12,7 @@ from typing import NamedTuple
 from liftopt.assessment.who import listed
 from liftopt.scenario.agents import Person
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import edge_heights, lead, partner
+from liftopt.scenario.placement import edge_heights, lead, partner, stand_of
 from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -74,12 +75,11 @@ def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
 
 
 def _scenario(scenario: Scenario) -> list[str]:
-    box, task = scenario.object, scenario.task
+    box = scenario.object
     start, end = edge_heights(scenario)
     return _wrapped(
         f"{listed(_described(scenario))} lift {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) from "
-        f"{start:g} to {end:g} m (height of the edges they hold) in {scenario.duration:g} s, "
-        f"{_apart(scenario)}standing {task.standing_distance:g} m apart"
+        f"{start:g} to {end:g} m (height of the edges they hold) in {scenario.duration:g} s{_apart(scenario)}"
     )
 
 
@@ -92,9 +92,13 @@ def _described(scenario: Scenario) -> Iterator[str]:
 
 
 def _apart(scenario: Scenario) -> str:
-    """Return whose distance is told, where more than two lift."""
-    other = partner(scenario)
-    return f"{lead(scenario)} and {other} " if len(scenario.agents) > 2 else ""
+    """Return how far the two who face each other stand apart; by name where more than two lift."""
+    first, other = lead(scenario), partner(scenario)
+    if other is None:
+        return ""
+    one, two = stand_of(scenario, first), stand_of(scenario, other)
+    whose = f"{first} and {other} " if len(scenario.agents) > 2 else ""
+    return f", {whose}standing {round(math.hypot(two.x - one.x, two.y - one.y), 3):g} m apart"
 
 
 def _verdicts(assessment: Assessment, told: Callable[[Finding], list[str]]) -> Iterator[Part]:

@@ -1,11 +1,13 @@
-"""How somebody who lifts is told: by what they are, and by name where there are several of the kind."""
+"""How texts call one who lifts: by the kind, and by name where there are several of the kind."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.meant import KINDS
 from liftopt.solution.finding import PERSON, ROBOT
 
 SUBJECTS = {"person": PERSON, "robot": ROBOT}
@@ -70,9 +72,20 @@ class Who:
 
 
 def who_is(agent: Named, agents: Iterable[Named]) -> Who:
-    """Return how an agent among ``agents`` is told."""
+    """Return how texts call an agent among ``agents``."""
     same = sum(other.kind == agent.kind for other in agents)
     return Who(SUBJECTS[agent.kind], agent.name, same == 1)
+
+
+def who_in(agents: Mapping[str, Person | Robot], name: str) -> Who:
+    """Return how an agent of a scenario is told."""
+    kind = agents[name].kind
+    return Who(SUBJECTS[kind], name, sum(agent.kind == kind for agent in agents.values()) == 1)
+
+
+def whose(name: str) -> str:
+    """Return ``"anna's"``; ``"the robot's"`` where the name is a word for what the agent is."""
+    return f"the {name}'s" if name in KINDS else f"{name}'s"
 
 
 def listed(names: Iterable[str]) -> str:

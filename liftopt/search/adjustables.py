@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from liftopt.assessment.who import who_in
 from liftopt.errors import InputError
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import distance_key, partner
+from liftopt.scenario.placement import distance_key, lead, partner, stand_of
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 
 LEAST_MOVE = 0.05  # [m], tried first where nothing says how far to move
@@ -100,11 +101,10 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
     for keys, where in (*_ends(scenario, "height"), *_ends(scenario, "z")):
         lower, higher = where + " at most {value:.2f} m", where + " at least {value:.2f} m"
         found.append(Adjustable(keys, 0.01, 0.1, lower, higher, _MOTION))
+    found += _of_others(scenario)
+    less, more = _along_x(scenario)
     for keys, where in (*_ends(scenario, "human_distance"), *_ends(scenario, "x")):
-        nearer, farther = (
-            where + " {change:.2f} m nearer to the person",
-            where + " {change:.2f} m farther from the person",
-        )
+        nearer, farther = f"{where} {{change:.2f}} m {less}", f"{where} {{change:.2f}} m {more}"
         found.append(Adjustable(keys, 0.01, 0.1, nearer, farther, _POSTURE))
     for name, agent in scenario.agents.items():
         if agent.kind == "robot":
@@ -121,6 +121,25 @@ def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]
         yield (f"task.{end}.{name}",), f"{end} height" if upright else f"object at the {end}"
     if len(given) == 2 and not upright:
         yield tuple(f"task.{end}.{name}" for end in given), "object at both ends"
+
+
+def _of_others(scenario: Scenario) -> Iterator[Adjustable]:
+    """Yield where the robots stand that are none of the two who face each other."""
+    facing = (lead(scenario), partner(scenario))
+    for name, agent in scenario.agents.items():
+        if agent.kind == "robot" and name not in facing:
+            for axis in ("x", "y"):
+                back, on = (f"{name} base {{change:.2f}} m towards {sign}{axis.upper()}" for sign in "-+")
+                yield Adjustable((f"{name}.base.{axis}",), 0.01, 0.1, back, on, _MOTION, 256)
+
+
+def _along_x(scenario: Scenario) -> tuple[str, str]:
+    """Return what it is called that the object moves towards -X and towards +X: nearer to the lead, farther from it."""
+    name = lead(scenario)
+    if stand_of(scenario, name).yaw_deg % 360.0:
+        return "towards -X", "towards +X"
+    called = who_in(scenario.agents, name).called
+    return f"nearer to {called}", f"farther from {called}"
 
 
 def _base(scenario: Scenario, name: str) -> str:

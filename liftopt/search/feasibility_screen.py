@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from liftopt.assessment.who import whose
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
@@ -23,7 +24,7 @@ MORE_ITERATIONS = 400
 STRONGEST = 64.0
 # Postures that differ by less in every joint [rad] are one; so many of them are tried further.
 DIFFERENT, NEAREST = 0.1, 6
-# So many limits are named that a posture exceeds.
+# At most so many exceeded limits are named.
 NAMED = 3
 # Ratio of the strengths at which the bisection ends.
 PRECISION = 1.01
@@ -34,8 +35,8 @@ NOTICEABLE = 0.01
 def too_fast(problem: Problem) -> InfeasibilityReason | None:
     """Return how much longer the lift must last for the object's speed limit, or None if it lasts long enough."""
     task = problem.task
-    # From one control point to the next a coordinate goes as far as the limit of that slope lets it, in all by a share
-    # of the distance at full speed.
+    # The speed limit bounds the step from each control point to the next; all steps together cover a share of the
+    # distance at full speed.
     share = (1.0 / problem.mesh.slope[:, 1:].diagonal()).sum()
     needed = np.abs(task.end - task.start) / task.pose_velocity / share
     shortest = float(np.nanmax(needed))
@@ -97,7 +98,7 @@ def _screen_end(
         return _outside(problem, name, beyond.outside[best], beyond.twisted[best]), near
     gaps = reach.gaps[nearest]
     who = problem.team.agents[int(np.argmax(gaps))].name
-    text = f"out of reach at the {name} of the lift: the {who}'s grasp stays {gaps.max():.3f} m short"
+    text = f"out of reach at the {name} of the lift: {whose(who)} grasp stays {gaps.max():.3f} m short"
     text += _range_of_motion(problem, kinematics, pose, again, deadline)
     return InfeasibilityReason("closure", who, float(gaps.max()), "m", text), near
 
@@ -107,11 +108,11 @@ def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> Inf
         agent = problem.team.agents[int(np.argmax(twisted))]
         limit, lacking = agent.grasp.max_turn, float(twisted.max())
         amount = float(np.degrees(np.arccos(np.clip(np.cos(limit) - lacking, -1.0, 1.0)) - limit))
-        text = f"held back at the {name} of the lift: the {agent.name}'s hand would have to turn "
+        text = f"held back at the {name} of the lift: {whose(agent.name)} hand would have to turn "
         text += f"{amount:.0f} deg farther on the object than the {np.degrees(limit):.0f} deg allowed"
         return InfeasibilityReason("grasp_turn", agent.name, amount, "deg", text)
     who, amount = problem.team.agents[int(np.argmax(outside))].name, float(outside.max())
-    text = f"held back at the {name} of the lift: the {who}'s grasp would lie {amount:.3f} m outside its half-space"
+    text = f"held back at the {name} of the lift: {whose(who)} grasp would lie {amount:.3f} m outside its half-space"
     return InfeasibilityReason("workspace", who, amount, "m", text)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from liftopt.assessment.who import whose
 from liftopt.collocation.elastic_mode import ElasticMotion, Violation, solve_elastic
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
@@ -98,12 +99,12 @@ def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
     who, amount, at = violation.who, violation.amount, f"at {violation.time:.2f} s"
     share, lifted = f"{100 * violation.share:.0f} %", problem.team.object.name
     words = {
-        "closure": f"the {who}'s grasp stays {amount:.3f} m off the {lifted} {at}",
-        "workspace": f"the {who}'s grasp lies {amount:.3f} m outside its half-space {at}",
+        "closure": f"{whose(who)} grasp stays {amount:.3f} m off the {lifted} {at}",
+        "workspace": f"{whose(who)} grasp lies {amount:.3f} m outside its half-space {at}",
         "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
-        "grasp_force": f"the {who}'s grasp needs {amount:.3g} N ({share}) more than its cap {at}",
-        "grasp_moment": f"the {who}'s grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
-        "grasp_turn": f"the {who}'s hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",
+        "grasp_force": f"{whose(who)} grasp needs {amount:.3g} N ({share}) more than its cap {at}",
+        "grasp_moment": f"{whose(who)} grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
+        "grasp_turn": f"{whose(who)} hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",
         "friction": f"flat hand: {who} it slides or lifts, {amount:.3g} N short of its friction {at}",
         "pressure": f"flat hand: {who} it tips or turns, {amount:.3g} Nm beyond its breadth {at}",
         "velocity": f"{who} has to be {amount:.2g} {violation.unit} ({share}) faster than its speed limit {at}",

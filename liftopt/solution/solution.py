@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from liftopt.errors import InputError
+from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
 from liftopt.scenario.model import Scenario
@@ -120,10 +120,23 @@ class Solution:
 
     @property
     def ground_reaction_force(self) -> Array:
-        """(K, 3) force of the ground on the first person, world axes [N]; of anybody: ``ground_force`` of the agent."""
-        return self.persons[0].ground_force
+        """(K, 3) force of the ground on the first person, world axes [N]; of anybody: ``ground_force`` of the agent.
+
+        Raises:
+            InputError: robots lift alone.
+        """
+        return self._first_person("ground_reaction_force").ground_force
 
     @property
     def ground_reaction_moment(self) -> Array:
-        """(K, 3) moment of the ground on the first person at the foot origin, world axes [Nm]."""
-        return self.persons[0].ground_moment
+        """(K, 3) moment of the ground on the first person at the foot origin, world axes [Nm].
+
+        Raises:
+            InputError: robots lift alone.
+        """
+        return self._first_person("ground_reaction_moment").ground_moment
+
+    def _first_person(self, asked: str) -> AgentTrajectory:
+        for person in self.persons:
+            return person
+        raise InputError(asked, NO_VALUE, "is the first person's, and this is a lift by robots alone")

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from liftopt.assessment.who import who_in
 from liftopt.errors import InputError
 from liftopt.files.entries import FREE
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import distance_key, partner
+from liftopt.scenario.placement import distance_key, lead, partner
 from liftopt.scenario.task import GraspPlace
 
 
@@ -42,7 +43,9 @@ def parameters_of(scenario: Scenario) -> tuple[Parameter, ...]:
         *_of_places(scenario),
     ]
     if (away := distance_key(scenario)) is not None:
-        found.append(Parameter(f"feet to {partner(scenario)}", (away,), 0.01, "m"))
+        first = lead(scenario)
+        whence = "feet" if scenario.agents[first].kind == "person" else first
+        found.append(Parameter(f"{whence} to {partner(scenario)}", (away,), 0.01, "m"))
     for name, agent in scenario.agents.items():
         if agent.kind == "robot":
             found.append(
@@ -65,9 +68,7 @@ def _of_places(scenario: Scenario) -> Iterator[Parameter]:
 
 def _of(scenario: Scenario, name: str, what: str) -> str:
     """Return what of an agent is meant; with others of its kind by its name."""
-    kind = scenario.agents[name].kind
-    alone = sum(agent.kind == kind for agent in scenario.agents.values()) == 1
-    return what if alone else f"{what} of {name}"
+    return what + who_in(scenario.agents, name).of
 
 
 def changed(scenario: Scenario, parameter: Parameter, change: float) -> Scenario:

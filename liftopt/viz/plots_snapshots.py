@@ -88,7 +88,8 @@ def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
         for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
     ]
     side = "the person's right" if stand_opposite(solution.scenario) else "the side, x to the right"
-    whose = "the hand" if stand_opposite(solution.scenario) else f"the hand of {who_is(agents[0], agents).called}"
+    first = who_is(agents[0], agents)
+    whose = f"the {first.hand}" if stand_opposite(solution.scenario) else f"the {first.hand} of {first.called}"
     lines = wrap(
         f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. Dotted: path of {whose}.",
         WORDS,
@@ -102,11 +103,11 @@ def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
     """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
     solution = lift.dense
-    held = object_of(solution.scenario, solution.urdfs)
+    lifted = object_of(solution.scenario, solution.urdfs)
     poses = np.hstack([solution.object.pose[:, :3], solution.object.quaternion])
     models = [
         *((agent.model, agent.urdf) for agent in agents_of(solution.scenario, solution.urdfs)),
-        (held.model, held.urdf),
+        (lifted.model, lifted.urdf),
     ]
     motions = [*(agent.q for agent in solution.agents), poses]
     return [

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,18 +14,6 @@ from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 
 GRAVITY = 9.81
-
-
-@pytest.fixture(scope="module")
-def people(team_solution: Callable[[str], Any]) -> Solution:
-    solution: Solution = team_solution("two_people").solution
-    return solution
-
-
-@pytest.fixture(scope="module")
-def robots(team_solution: Callable[[str], Any]) -> Solution:
-    solution: Solution = team_solution("two_robots").solution
-    return solution
 
 
 def _verdicts(solution: Solution) -> dict[str | None, str]:
@@ -85,6 +71,14 @@ def test_the_terminal_tells_everybody_under_their_name(people: Solution, robots:
     for words in ("Person: WARNING", "Robot near: ", "Robot far: ", "human and near"):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
+
+
+def test_the_distance_told_is_that_of_the_two_who_face_each_other(robots: Solution) -> None:
+    """The human at the origin, the robot near where the scenario puts it: 1.75 m ahead and 0.55 m to the side."""
+    apart = np.hypot(1.75, 0.55)
+    assert f"human and near standing {apart:.3f} m apart" in " ".join(verdict_text(robots, None).split())
+    moved = replace(robots, scenario=robots.scenario.replace({"near.base.y": 0.0, "near.base.x": 1.5}))
+    assert "human and near standing 1.5 m apart" in " ".join(verdict_text(moved, None).split())
 
 
 def test_hands_of_three_work_against_each_other(robots: Solution) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,7 +16,7 @@ from liftopt.commands import pareto as pareto_command
 from liftopt.commands import sensitivity as sensitivity_command
 from liftopt.errors import InputError
 from liftopt.multibody.trajectory import limit_share
-from liftopt.scenario.model import Scenario
+from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.studies.parameters import parameters_of
 from liftopt.studies.pareto import Front, Point, pareto_front
 from liftopt.studies.pareto_plot import pareto_figure
@@ -141,6 +142,13 @@ def test_parameters_are_everybodys_by_name(team_solution: Teams) -> None:
     assert robots["stature"] == ("human.stature",)
     assert robots["robot base height of far"] == ("far.base_height",)
     assert robots["start height"] == ("task.start.height",)
+
+
+def test_robots_alone_have_no_feet() -> None:
+    team = load_scenario(Path(__file__).parents[1] / "scenario" / "teams" / "two_sawyers.toml")
+    alone = {p.name: p.keys for p in parameters_of(team)}
+    assert alone["near to far"] == ("task.standing_distance",)
+    assert not [name for name in alone if "feet" in name]
 
 
 @pytest.mark.parametrize("name", ["two_people", "two_robots"])

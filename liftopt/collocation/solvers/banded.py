@@ -67,7 +67,7 @@ class Banded:
     def __init__(
         self, problem: Problem, options: BandedOptions | None = None, progress: Progress | None = None
     ) -> None:
-        """Build the solver; ``progress`` hears of it when kernels must be compiled first.
+        """Build the solver; ``progress`` is called when kernels must be compiled first.
 
         Raises:
             SolverError: the extension is not installed, or the problem does not have the form it takes.
