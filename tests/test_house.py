@@ -29,8 +29,6 @@ NEVER = {
     "files": {"multibody", "collocation", "scenario", "solution", "assessment", "search", *OUTPUTS},
 }
 ONLY_FROM = {"crosscheck": {"commands"}, "commands": {"__main__"}}  # no solve imports what checks it
-# Their text is part of the key under which compiled kernels are kept: they name these types themselves.
-OWN_TYPES = {"collocation/dynamics.py", "collocation/codegen/kernels.py"}
 # Where dotted keys of a scenario are taken apart; the others hold no such keys, but a code, a version, words.
 DOTTED = {"scenario", "solution/finding.py", "multibody/mujoco_model.py"}
 
@@ -86,7 +84,7 @@ def _where(pattern: str) -> set[str]:
 
 
 def test_types_of_all_rooms_have_one_home() -> None:
-    assert _where(r"^(Array|Progress)\b.*=") - OWN_TYPES == {"types.py"}
+    assert _where(r"^(Array|Progress)\b.*=") == {"types.py"}
 
 
 def test_dotted_keys_are_taken_apart_in_one_room() -> None:

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
-Array = npt.NDArray[np.float64]
+from liftopt.types import Array
+
 # Entries of a model that are smaller than this are structural zeros (rounding of angles in a URDF).
 STRUCTURAL_ZERO = 1e-12
 

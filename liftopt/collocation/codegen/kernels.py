@@ -1,7 +1,7 @@
 """The knot functions as fast kernels: compiled with the C compiler, kept between runs by content.
 
 A kernel's key digests all that it is generated from, so a change of topology, of the generating code, of a library's
-version or of the compiler's options makes another file; ``libraries`` says where files are and which are trusted.
+version or of the compiler's options makes another file; ``kernel_cache`` says where files are and which are trusted.
 Processes that start at once on a cold cache do not disturb each other. Where a kernel is neither shipped nor kept and
 there is no compiler, CasADi's virtual machine evaluates the same functions.
 """
@@ -24,12 +24,12 @@ from typing import Any
 from liftopt.collocation import dynamics
 from liftopt.collocation.codegen.kernel_cache import cache_folder, find_library, keep
 from liftopt.collocation.dynamics import KnotFunctions, Topology
+from liftopt.types import Progress
 
 # -O1: a higher level takes minutes and evaluates no faster.
 FLAGS = ("-O1", "-fPIC", "-shared", "-fno-math-errno")
 ROLES = ("value", "gradient", "jacobian", "curvature", "squares")
 Builder = Callable[[Topology], KnotFunctions]
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
