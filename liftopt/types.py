@@ -10,4 +10,4 @@ if TYPE_CHECKING:  # what only names a type starts without NumPy
     import numpy.typing as npt
 
 Array: TypeAlias = "npt.NDArray[np.float64]"
-Progress: TypeAlias = Callable[[str], None]  # hears one line at a time of what is going on
+Progress: TypeAlias = Callable[[str], None]  # called with one line at a time about what is going on

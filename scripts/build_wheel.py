@@ -29,6 +29,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 EXTENSION = "_liftopt_pinocchio_casadi"
+VIEWER = "liftopt/viz/assets/meshcat/main.min.js"
 # What pip adds to a folder when it installs a wheel.
 ADDED = ("RECORD", "INSTALLER", "REQUESTED", "direct_url.json")
 
@@ -93,9 +94,12 @@ def _digest(content: bytes) -> str:
 def _repaired(wheel: Path, out: Path) -> Path:
     """Tag a wheel with the oldest system that it runs on and return its path in ``out``."""
     with zipfile.ZipFile(wheel) as file:
-        kernels = any(name.startswith("liftopt/kernels/") for name in file.namelist())
-    if wheel.name.startswith("liftopt-") and not kernels:
-        raise SystemExit(f"{wheel.name} has no kernels; what the build printed says why")
+        names = file.namelist()
+    if wheel.name.startswith("liftopt-"):
+        if not any(name.startswith("liftopt/kernels/") for name in names):
+            raise SystemExit(f"{wheel.name} has no kernels; what the build printed says why")
+        if VIEWER not in names:
+            raise SystemExit(f"{wheel.name} has no {VIEWER}; install liftopt again")
     repaired = wheel.parent / "repaired" / wheel.name
     _run(["auditwheel", "repair", "--exclude", "libcasadi.so*", "--wheel-dir", str(repaired), str(wheel)])
     (written,) = repaired.glob("*.whl")

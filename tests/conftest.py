@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -13,10 +14,21 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from liftopt.multibody.agent import Grasp
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.solvers.deadline import NEVER
+from liftopt.collocation.spline import RestToRestSpline
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, Grasp, LiftedObject
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.placement import facing
+from liftopt.multibody.robots.sawyer import sawyer_agent
+from liftopt.multibody.table import lifted_table
 from liftopt.scenario.model import load_scenario
+from liftopt.search.initial_guess import InitialGuess, posture_starts
 from liftopt.solution.finding import Assessment, Finding
 from liftopt.solution.solution import Solution
+
+TEN_DEGREES = np.radians(10.0)
 
 
 def pytest_configure() -> None:
@@ -74,11 +86,84 @@ def team_solution(solved: Callable[..., Solved]) -> Callable[[str], Any]:
     return cache(lambda name: module.made(name, pattern))
 
 
+@pytest.fixture(scope="session")
+def people(team_solution: Callable[[str], Any]) -> Solution:
+    """Return the lift of anna and ben, by ``team_solution``."""
+    solution: Solution = team_solution("two_people").solution
+    return solution
+
+
+@pytest.fixture(scope="session")
+def robots(team_solution: Callable[[str], Any]) -> Solution:
+    """Return the lift of a human with the Sawyers near and far."""
+    solution: Solution = team_solution("two_robots").solution
+    return solution
+
+
+def level_task(agents: int = 2, x: float = 0.625, **changes: object) -> LiftTask:
+    """Return a lift of a level object from a centre at 0.91 m to 1.41 m, as in Table 5."""
+    task = LiftTask(
+        duration=2.0,
+        start=np.array([x, np.nan, 0.91, 0.0, 0.0, 0.0]),
+        end=np.array([x, np.nan, 1.41, 0.0, 0.0, 0.0]),
+        pose_lower=np.array([-5.0, -5.0, 0.0, 0.0, -TEN_DEGREES, -TEN_DEGREES]),
+        pose_upper=np.array([5.0, 5.0, 3.0, 0.0, TEN_DEGREES, TEN_DEGREES]),
+        pose_velocity=np.full(6, 2.0),
+        agent_weights=(1.0, 0.7, 1.3)[:agents],
+        acceleration_weight=0.5,
+        force_weight=0.01,
+        max_grasp_force=200.0,
+        balance_tolerance=0.0,
+    )
+    return replace(task, **changes)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="session")
+def make_task() -> Callable[..., LiftTask]:
+    return level_task
+
+
+@pytest.fixture(scope="session")
+def human() -> Agent:
+    return human_agent(Subject(1.75, 75.0, "male"))
+
+
+@pytest.fixture(scope="session")
+def sawyer() -> Agent:
+    return sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
+
+
+@pytest.fixture(scope="session")
+def table() -> LiftedObject:
+    return lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02)
+
+
+@pytest.fixture(scope="session")
+def team(human: Agent, sawyer: Agent, table: LiftedObject) -> Team:
+    return Team.of((human, sawyer), table)
+
+
+@pytest.fixture(scope="session")
+def small_lift(team: Team) -> Problem:
+    """Return the lift of Table 5 on 10 intervals, which the tests solve."""
+    return Problem(team, level_task(agent_weights=(1.0, 1.0)), RestToRestSpline(10).mesh())
+
+
+@pytest.fixture(scope="session")
+def starts(small_lift: Problem) -> list[InitialGuess]:
+    return posture_starts(small_lift, 2, 0, NEVER)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(7)
+
+
 def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:
     knots, n = 5, joints + 3
     names = tuple(f"{name}_GT{i}" for i in (1, 2, 3)) + tuple(f"{name}_Q{i}" for i in range(1, joints + 1))
     tau = np.zeros((knots, n))
-    tau[:, :3] = 1000.0  # body weight in the pinned joints: must not turn up among the joints
+    tau[:, :3] = 1000.0  # body weight in the locked joints: must not turn up among the joints
     tau[:, 4] = [0.0, 20.0, -30.0, 10.0, 0.0]
     limits = SimpleNamespace(tau_lower=np.full(joints, -100.0), tau_upper=np.full(joints, 40.0))
     q = np.zeros((knots, n))

@@ -69,7 +69,7 @@ def made(name: str, pattern: Solution) -> Team:
         pattern: whose solver's figures are borrowed.
     """
     scenario = scenario_from_dict(TEAMS[name])
-    knots, agents, held = len(pattern.time), agents_of(scenario), object_of(scenario)
+    knots, agents, lifted = len(pattern.time), agents_of(scenario), object_of(scenario)
     time = np.linspace(0.0, scenario.duration, knots)
     share = time / time[-1]
     start, end = scenario.task.start, scenario.task.end
@@ -78,7 +78,7 @@ def made(name: str, pattern: Solution) -> Team:
     pose = np.zeros((knots, 6))
     pose[:, 0], pose[:, 2] = start.human_distance + box.depth / 2, height + box.height / 2
     x, xdot, xddot = _rates(time, pose)
-    points = object_trajectory(held, x, xdot, xddot, np.zeros((knots, 3 * len(agents)))).grasp_position
+    points = object_trajectory(lifted, x, xdot, xddot, np.zeros((knots, 3 * len(agents)))).grasp_position
     lift = box.mass * (GRAVITY + xddot[:, 2]) / len(agents)
     forces = np.zeros((knots, len(agents), 3))
     forces[:, :, 2] = lift[:, None] + 4.0 * np.sin(np.pi * share)[:, None] * np.linspace(1.0, -1.0, len(agents))
@@ -94,8 +94,8 @@ def made(name: str, pattern: Solution) -> Team:
         scenario=scenario,
         time=time,
         agents=tuple(tracks),
-        object=object_trajectory(held, x, xdot, xddot, forces.reshape(knots, -1)),
-        urdfs={agent.name: agent.urdf for agent in agents} | {held.name: held.urdf},
+        object=object_trajectory(lifted, x, xdot, xddot, forces.reshape(knots, -1)),
+        urdfs={agent.name: agent.urdf for agent in agents} | {lifted.name: lifted.urdf},
         objective_terms=dict.fromkeys(terms, 100.0),
         objective_weights=dict.fromkeys(terms, 1.0),
     )

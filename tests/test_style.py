@@ -1,4 +1,4 @@
-"""The house: the linters' verdicts, the length and names of files, and no trace of the machine it was written on."""
+"""The style: the linters' verdicts, the length and names of files, and no trace of the machine it was written on."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LONGEST = 400
-SOURCES = ("liftopt", "scripts", "tests")
+SOURCES = ("liftopt", "scripts", "tests", "docs")
 
 
 def _files(*suffixes: str) -> list[Path]:

@@ -7,8 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drawings.stage import agents, arrow, bare, bodies, default_lift, paint_bodies
+from liftopt.types import Array
 from liftopt.viz.outlines import VIEWS
-from liftopt.viz.plots_style import BLUE, GREEN, INK, LIMIT, VERMILION, Array
+from liftopt.viz.plots_style import BLUE, GREEN, INK, LIMIT, VERMILION
 
 PER_NEWTON = 0.009  # length of a drawn force [m/N]
 AXES = (("x", VERMILION), ("y", GREEN), ("z", BLUE))
@@ -27,9 +28,9 @@ def grasp() -> Figure:
 def _forces(axes: Axes) -> None:
     """Show the start of the default lift: frames of the object, and the forces of both hands and of gravity."""
     solution, cast = default_lift(), bodies()
-    held = cast[solution.object.name]
-    paint_bodies(axes, [(body, body.q[0]) for body in cast.values() if body is not held], "right", alpha=0.25)
-    paint_bodies(axes, [(held, held.q[0])], "right")
+    lifted = cast[solution.object.name]
+    paint_bodies(axes, [(body, body.q[0]) for body in cast.values() if body is not lifted], "right", alpha=0.25)
+    paint_bodies(axes, [(lifted, lifted.q[0])], "right")
     centre = solution.object.pose[0, [0, 2]]
     for agent, color, side in zip(solution.agents, (BLUE, VERMILION), (-1, 1), strict=True):
         point, force = agent.grasp_position[0, [0, 2]], agent.grasp_force[0, [0, 2]]
@@ -58,8 +59,8 @@ def _forces(axes: Axes) -> None:
 def _hands(axes: Axes) -> None:
     """Show the hands' frames in their natural hold of a level object: what a wrench grasp keeps near."""
     solution = default_lift()
-    held = bodies()[solution.object.name]
-    paint_bodies(axes, [(held, held.q[0])], "right")
+    lifted = bodies()[solution.object.name]
+    paint_bodies(axes, [(lifted, lifted.q[0])], "right")
     for agent, column in zip(agents(), range(2), strict=True):
         point = solution.object.grasp_position[0, column]
         _triad(axes, point, np.asarray(agent.grasp.R_hand_object.T), f"{agent.name}_grasp", column)

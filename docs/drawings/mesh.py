@@ -14,17 +14,17 @@ def mesh() -> Figure:
     """Return elbow angle and acceleration with their knots, a grasp force, and the closure of both grasps."""
     lift = Lift.of(default_lift())
     knots, dense = lift.knots, lift.dense
-    person, joint = knots.agents[0], knots.agents[0].joint_names.index("human_Q7")
+    person, joint = knots["human"], knots["human"].joint_names.index("human_Q7")
     figure = Figure(figsize=(7.6, 6.4))
     angle, acceleration, force, closure = figure.subplots(4, 1, sharex=True)
     figure.subplots_adjust(left=0.1, right=0.985, top=0.96, bottom=0.07, hspace=0.42)
-    angle.plot(dense.time, np.degrees(dense.agents[0].q[:, joint]), color=BLUE)
+    angle.plot(dense.time, np.degrees(dense["human"].q[:, joint]), color=BLUE)
     angle.plot(knots.time, np.degrees(person.q[:, joint]), "o", color=BLUE, markersize=3.5, markerfacecolor="white")
     angle.set_title("joint angle: a cubic B-spline (here the elbow, Q7 [deg])")
-    acceleration.plot(dense.time, dense.agents[0].a[:, joint], color=GREEN)
+    acceleration.plot(dense.time, dense["human"].a[:, joint], color=GREEN)
     acceleration.plot(knots.time, person.a[:, joint], "o", color=GREEN, markersize=3.5, markerfacecolor="white")
     acceleration.set_title("its acceleration: linear between knots [rad/s\N{SUPERSCRIPT TWO}]")
-    force.plot(dense.time, dense.agents[0].grasp_force[:, 2], color=VERMILION)
+    force.plot(dense.time, dense["human"].grasp_force[:, 2], color=VERMILION)
     force.plot(knots.time, person.grasp_force[:, 2], "o", color=VERMILION, markersize=3.5, markerfacecolor="white")
     force.set_title("a grasp force: one unknown a component and knot (the hand's, upwards [N])")
     for trajectory, column, color in zip(dense.agents, range(2), (BLUE, VERMILION), strict=True):

@@ -9,8 +9,9 @@ import pinocchio as pin
 from matplotlib.axes import Axes
 
 from drawings.stage import PALE, Body, arrow, bare, paint_bodies
+from liftopt.types import Array
 from liftopt.viz.outlines import VIEWS
-from liftopt.viz.plots_style import VERMILION, Array
+from liftopt.viz.plots_style import VERMILION
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from drawings.motions import Motion, show
 from drawings.stage import agents, bodies, default_lift
 from liftopt.multibody.joint_curves import JointCurve, human_curves
-from liftopt.viz.plots_style import Array
+from liftopt.types import Array
 
 
 class Look(NamedTuple):
@@ -48,7 +48,7 @@ def person_joints() -> Figure:
     figure = Figure(figsize=(8.6, 6.6))
     panels = figure.subplots(2, 5)
     figure.subplots_adjust(left=0.01, right=0.99, top=0.86, bottom=0.02, wspace=0.08, hspace=0.36)
-    for axes, curve in zip(panels.flat, human_curves(solution.agents[0]), strict=True):
+    for axes, curve in zip(panels.flat, human_curves(solution["human"]), strict=True):
         sign = -1 if "\N{MINUS SIGN}" in curve.label else +1
         show(axes, person, _motion(curve.joint, sign), _title(curve, sign))
     figure.suptitle(

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from drawings.motions import Motion, fill, show
 from drawings.stage import agents, bodies, default_lift, paint_bodies
 from liftopt.multibody.joint_curves import robot_curves
+from liftopt.types import Array
 from liftopt.viz.outlines import VIEWS
-from liftopt.viz.plots_style import BLUE, Array
+from liftopt.viz.plots_style import BLUE
 
 VIEW = {"Q1": "above", "Q3": "behind", "Q5": "behind", "Q7": "behind"}
 TURN_DEG = 35.0
@@ -27,7 +28,7 @@ def robot_joints() -> Figure:
     panels = figure.subplots(2, 4)
     figure.subplots_adjust(left=0.01, right=0.99, top=0.88, bottom=0.02, wspace=0.06, hspace=0.3)
     _axes_of_all(panels[0, 0])
-    curves = robot_curves(solution.agents[1], solution.scenario.agents["robot"].model)
+    curves = robot_curves(solution["robot"], solution.scenario.agents["robot"].model)
     for axes, curve in zip(panels.flat[1:], curves, strict=True):
         title = (
             f"{curve.label}, arrow: +\nrange {curve.q_limits[0]:.0f} to {curve.q_limits[1]:.0f}\N{DEGREE SIGN}\n"

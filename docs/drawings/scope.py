@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from drawings.stage import PALE, Body, bare, bodies, default_lift, joint_place, paint_bodies
-from liftopt.viz.plots_style import BLUE, INK, ORANGE, SKY, VERMILION, Array
+from liftopt.types import Array
+from liftopt.viz.plots_style import BLUE, INK, ORANGE, SKY, VERMILION
 
 STANDS, TRUNK, ARM, ROBOT, OBJECT = PALE, SKY, BLUE, VERMILION, ORANGE
 

@@ -17,8 +17,9 @@ from matplotlib.patches import FancyArrowPatch, Polygon
 
 import liftopt as lo
 from liftopt.scenario.build import agents_of, object_of
+from liftopt.types import Array
 from liftopt.viz.outlines import outlines
-from liftopt.viz.plots_style import INK, Array
+from liftopt.viz.plots_style import INK
 
 PALE = (0.86, 0.87, 0.89)
 Paint = Callable[[int, tuple[float, float, float]], tuple[float, float, float]]
@@ -51,11 +52,13 @@ def default_result() -> Path:
 def bodies() -> dict[str, Body]:
     """Return person, robot and object of the default lift by name."""
     solution = default_lift()
-    held = object_of(solution.scenario, solution.urdfs)
+    lifted = object_of(solution.scenario, solution.urdfs)
     poses = np.hstack([solution.object.pose[:, :3], solution.object.quaternion])
     pairs = zip(agents(), solution.agents, strict=True)
     found = [Body(agent.name, agent.model, _shapes(agent.model, agent.urdf), motion.q) for agent, motion in pairs]
-    return {body.name: body for body in [*found, Body(held.name, held.model, _shapes(held.model, held.urdf), poses)]}
+    return {
+        body.name: body for body in [*found, Body(lifted.name, lifted.model, _shapes(lifted.model, lifted.urdf), poses)]
+    }
 
 
 @cache

@@ -21,7 +21,7 @@ ALL_ALONG = 0.9  # share of the lift from which a limit is active "all along"
 
 @dataclass(frozen=True)
 class Words:
-    """How the joints of an agent are told.
+    """The words in which findings tell of an agent's joints.
 
     Attributes:
         who: whose they are.

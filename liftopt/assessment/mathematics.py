@@ -13,7 +13,7 @@ from liftopt.solution.solution import CUT_SHORT, Solution
 LARGE_ERROR = 0.05  # of the objective; more is a caution
 EXCEEDED = 1e-3  # excess between knots worth a word, in its unit
 SPREAD = 0.01  # relative difference of two optima worth a word
-# Told of person and robot, with the verdicts on them.
+# The findings on person and robot tell of these.
 OF_AGENTS = ("torque limits", "speed limits", "position limits", "grasp force cap")
 
 

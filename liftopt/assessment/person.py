@@ -23,7 +23,7 @@ UNSURE = ("unverified", "estimate")
 
 
 def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterator[Finding]:
-    """Give what is to be said of a person in a solution between its knots too; ``who`` is how they are told."""
+    """Give what is to be said of a person in a solution between its knots too; ``who`` is how texts call them."""
     ergonomics = ergonomics_of(fine, person)
     yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:

@@ -38,7 +38,7 @@ DATA = {"sawyer": RobotData(sawyer_description.PAYLOAD, sawyer_description.PAYLO
 
 
 def robot_findings(fine: Solution, robot: AgentTrajectory, who: Who) -> Iterator[Finding]:
-    """Give what is to be said of a robot in a solution between its knots too; ``who`` is how it is told."""
+    """Give what is to be said of a robot in a solution between its knots too; ``who`` is how texts call it."""
     asked = fine.scenario.agents[robot.name]
     assert isinstance(asked, Robot)
     data, meanings = DATA.get(asked.model), joint_meanings(asked.kind, asked.model)

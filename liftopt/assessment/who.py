@@ -1,4 +1,4 @@
-"""How somebody who lifts is told: by what they are, and by name where there are several of the kind."""
+"""How texts call one who lifts: by the kind, and by name where there are several of the kind."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Who:
 
 
 def who_is(agent: Named, agents: Iterable[Named]) -> Who:
-    """Return how an agent among ``agents`` is told."""
+    """Return how texts call an agent among ``agents``."""
     same = sum(other.kind == agent.kind for other in agents)
     return Who(SUBJECTS[agent.kind], agent.name, same == 1)
 

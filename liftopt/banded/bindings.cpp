@@ -91,7 +91,7 @@ const char* name_of(banded::Status status) {
     case banded::Status::time: return "User_Requested_Stop";
     case banded::Status::line_search: return "Line_Search_Failed";
     case banded::Status::infeasible: return "Infeasible_Problem_Detected";
-    case banded::Status::beaten: return "Worse_Than_Rival";
+    case banded::Status::beaten: return "Worse_Than_Incumbent";
     default: return "Invalid_Number_Detected";
   }
 }
@@ -198,15 +198,15 @@ PYBIND11_MODULE(_liftopt_banded, module) {
           "solve",
           [](Solver& solver, const Doubles& lower_x, const Doubles& upper_x, const Doubles& lower_g,
              const Doubles& upper_g, const Doubles& x0, const std::optional<std::tuple<Doubles, Doubles>>& warm,
-             double tolerance, double rough, double objective_scaling, double seconds, double rival, double mu,
+             double tolerance, double rough, double objective_scaling, double seconds, double incumbent, double mu,
              double push, int max_iterations, int predictions, int verbose) {
-            const banded::Options options{tolerance, rough, objective_scaling, seconds, rival, mu, push,
+            const banded::Options options{tolerance, rough, objective_scaling, seconds, incumbent, mu, push,
                                           max_iterations, predictions, verbose};
             return solve(solver.point, *solver.nlp, lower_x, upper_x, lower_g, upper_g, x0, warm, options);
           },
           py::kw_only(), py::arg("lower_x"), py::arg("upper_x"), py::arg("lower_g"), py::arg("upper_g"),
           py::arg("x0"), py::arg("warm") = py::none(), py::arg("tolerance") = 1e-6, py::arg("rough") = 0.0,
-          py::arg("objective_scaling") = 0.1, py::arg("seconds") = 1e20, py::arg("rival") = INFINITY,
+          py::arg("objective_scaling") = 0.1, py::arg("seconds") = 1e20, py::arg("incumbent") = INFINITY,
           py::arg("mu") = 0.1, py::arg("push") = 1e-2, py::arg("max_iterations") = 500,
           py::arg("predictions") = 0, py::arg("verbose") = 0);
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace banded {
 namespace {
@@ -48,18 +49,24 @@ BlockCholesky::BlockCholesky(std::vector<std::vector<int>> blocks, const std::ve
     inverse_offset += n * n;
     below_.emplace_back();
     for (int i : rows[j]) {
-      below_[j].push_back({i, offset});
+      below_[j].push_back({i, offset, false});
       offset += stored(i) * n;
     }
   }
   for (int j = 0; j < count; ++j)
     for (std::size_t k = 0; k < below_[j].size(); ++k)
       for (std::size_t i = k; i < below_[j].size(); ++i)
-        updates_.push_back(find(below_[j][i].block, below_[j][k].block));
+        updates_.push_back(plan_update(below_[j][i].block, below_[j][k].block));
   values_.resize(offset);
   inverses_.resize(inverse_offset);
   panel_.resize(tallest * tallest);
   permuted_.resize(permuted);
+}
+
+BlockCholesky::Update BlockCholesky::plan_update(int row, int column) {
+  for (Below& below : below_[column])
+    if (below.block == row) return {below.offset, !std::exchange(below.updated, true)};
+  return {find(row, column), false};  // a diagonal block, which is fetched
 }
 
 int BlockCholesky::find(int row, int column) const {
@@ -91,41 +98,40 @@ void BlockCholesky::add_places(int unknown, std::vector<int>& places) const {
           places.push_back(below.offset + static_cast<int>(i) * n + place);
 }
 
-// Copy block columns up to `last` from the matrix, each when it is first needed: a factorisation that fails has not
-// copied the rest, and what was copied is still in the cache when it is used.
-void BlockCholesky::fetch(const double* matrix, double delta, int last) {
-  if (fetched_ > last) return;
-  const int first = diagonal_[fetched_];
-  const int end = last + 1 < static_cast<int>(blocks_.size()) ? diagonal_[last + 1] : static_cast<int>(storage());
-  std::copy(matrix + first, matrix + end, values_.begin() + first);
+// Copy diagonal blocks up to `last` from the matrix. The other blocks are read from it when they are first needed: a
+// factorisation that fails has not read the rest.
+void BlockCholesky::fetch_diagonal(const double* matrix, double delta, int last) {
   for (; fetched_ <= last; ++fetched_) {
-    const int n = stored(fetched_);
-    for (std::size_t i = 0; i < blocks_[fetched_].size(); ++i) values_[diagonal_[fetched_] + i * (n + 1)] += delta;
+    const int n = stored(fetched_), first = diagonal_[fetched_];
+    std::copy_n(matrix + first, n * n, values_.begin() + first);
+    for (std::size_t i = 0; i < blocks_[fetched_].size(); ++i) values_[first + i * (n + 1)] += delta;
   }
 }
 
 bool BlockCholesky::factorise(const double* matrix, double delta) {
-  std::size_t update = 0;
+  auto update = updates_.begin();
+  double* values = values_.data();
   fetched_ = 0;
   for (std::size_t j = 0; j < blocks_.size(); ++j) {
-    fetch(matrix, delta, below_[j].empty() ? static_cast<int>(j) : below_[j].back().block);
+    fetch_diagonal(matrix, delta, below_[j].empty() ? static_cast<int>(j) : below_[j].back().block);
     const int n = static_cast<int>(blocks_[j].size()), ld = stored(static_cast<int>(j));
     double* inverse = inverses_.data() + inverse_[j];
-    if (!dense_.factorise(values_.data() + diagonal_[j], ld, n, inverse, kSmallestPivot)) return false;
+    if (!dense_.factorise(values + diagonal_[j], ld, n, inverse, kSmallestPivot)) return false;
     for (const Below& below : below_[j]) {
-      double* block = values_.data() + below.offset;
+      const double* from = below.updated ? values : matrix;
       const int rows = stored(below.block);
-      std::memcpy(panel_.data(), block, sizeof(double) * rows * n);
-      std::fill_n(block, rows * ld, 0.0);
-      dense_.multiply_add(block, rows, panel_.data(), rows, inverse, ld, rows, ld, n, 1.0);
+      dense_.multiply_triangular(values + below.offset, rows, from + below.offset, rows, inverse, ld, rows, n);
     }
-    for (std::size_t k = 0; k < below_[j].size(); ++k)
-      for (std::size_t i = k; i < below_[j].size(); ++i) {
-        const int rows = stored(below_[j][i].block), columns = stored(below_[j][k].block);
-        double* target = values_.data() + updates_[update++];
-        const double *left = values_.data() + below_[j][i].offset, *right = values_.data() + below_[j][k].offset;
-        dense_.multiply_add(target, rows, left, rows, right, columns, rows, columns, n, -1.0);
+    for (std::size_t k = 0; k < below_[j].size(); ++k) {
+      const double* right = values + below_[j][k].offset;
+      const int columns = stored(below_[j][k].block);
+      dense_.subtract_square(values + update++->offset, columns, right, columns, columns, n);
+      for (std::size_t i = k + 1; i < below_[j].size(); ++i, ++update) {
+        const double *left = values + below_[j][i].offset, *from = update->first ? matrix : values;
+        const int rows = stored(below_[j][i].block), target = update->offset;
+        dense_.subtract_product(values + target, rows, from + target, left, rows, right, columns, rows, columns, n);
       }
+    }
   }
   return true;
 }

@@ -40,18 +40,25 @@ class BlockCholesky {
  private:
   struct Below {
     int block, offset;
+    bool updated = false;  // before its own column is reached
+  };
+  // The target of an update; the first one takes it from the matrix.
+  struct Update {
+    int offset;
+    bool first;
   };
   int find(int row, int column) const;
-  void fetch(const double* matrix, double delta, int last);
+  Update plan_update(int row, int column);
+  void fetch_diagonal(const double* matrix, double delta, int last);
   int stored(int block) const { return padded(static_cast<int>(blocks_[block].size())); }
 
   std::vector<std::vector<int>> blocks_;
   std::vector<std::pair<int, int>> position_;  // block and place in it, of each unknown
   std::vector<int> diagonal_, inverse_;        // offsets; a block column is stored whole, from its diagonal block on
-  int fetched_ = 0;                            // block columns that are no longer those of the last matrix
+  int fetched_ = 0;                            // diagonal blocks that are no longer those of the last matrix
   std::vector<std::vector<Below>> below_;
-  std::vector<int> updates_;  // offsets of the targets of each column's updates, in the order of use
-  std::vector<int> first_;    // of each block in the permuted vector
+  std::vector<Update> updates_;  // of each column, in the order of use
+  std::vector<int> first_;       // of each block in the permuted vector
   Aligned values_, inverses_, panel_, permuted_;
   const DenseOperations& dense_;
 };

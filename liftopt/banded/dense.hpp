@@ -15,13 +15,17 @@ inline int padded(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 struct DenseOperations {
   const char* name;
 
-  // C (rows x columns) += sign A B^T, A (rows x depth), B (columns x depth); rows and columns padded, depth not.
-  void (*multiply_add)(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows, int columns,
-                       int depth, double sign);
+  // C (rows x padded n) = A L^T, A (rows x n), L (n x n) lower triangular with zeros above; C may be A.
+  void (*multiply_triangular)(double* c, int ldc, const double* a, int lda, const double* l, int ldl, int rows,
+                              int n);
 
-  // The lower triangle of C (rows x rows) += A B^T; above it, anything.
-  void (*multiply_add_lower)(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int rows,
-                             int depth);
+  // C (rows x columns) = D - A B^T, A (rows x depth), B (columns x depth); rows and columns padded, depth not. D has C's
+  // columns as far apart, and may be C.
+  void (*subtract_product)(double* c, int ldc, const double* d, const double* a, int lda, const double* b, int ldb,
+                           int rows, int columns, int depth);
+
+  // The lower triangle of C (rows x rows) -= A A^T; above it, anything.
+  void (*subtract_square)(double* c, int ldc, const double* a, int lda, int rows, int depth);
 
   // A = L L^T in place on the lower triangle of A (n x n, columns ld apart), and L^-1; false where A is not positive
   // definite by more than rounding: a pivot must exceed `threshold`.

@@ -17,7 +17,7 @@ constexpr double kLeastMu = 0.4;
 constexpr double kPredicted = 0.5;
 constexpr int kMostHalvings = 24, kMostCorrections = 2, kMostShifts = 6;
 constexpr double kFirstShift = 1e-2, kShiftGrowth = 10.0;
-// What is expected of a solve that has a rival: that the objective falls once more by what it fell in so many
+// What is expected of a solve that has an incumbent: that the objective falls once more by what it fell in so many
 // iterations, and that this share of the unknowns is at a bound. A shorter window loses optima (docs/tuning.md).
 constexpr std::size_t kWindow = 5;
 constexpr double kAtBounds = 0.2;
@@ -137,16 +137,16 @@ bool InteriorPoint::predict() {
   return true;
 }
 
-// Whether nothing lower than the rival is in sight, from the second barrier problem on: before, the objective tells
+// Whether nothing lower than the incumbent is in sight, from the second barrier problem on: before, the objective tells
 // little. Each active bound holds the minimum of a barrier problem some mu above that of the problem.
 bool InteriorPoint::beaten() {
-  if (!std::isfinite(options_.rival)) return false;
+  if (!std::isfinite(options_.incumbent)) return false;
   past_.push_back(now_.f);
   if (past_.size() <= kWindow) return false;
   const double fall = std::fabs(past_.front() - now_.f);
   past_.pop_front();
   const double lowest = now_.f - fall - kAtBounds * x_.size() * mu_;
-  return mu_ < options_.mu && lowest > options_.objective_scaling * options_.rival;
+  return mu_ < options_.mu && lowest > options_.objective_scaling * options_.incumbent;
 }
 
 double InteriorPoint::evaluate(Point& point) {

@@ -10,7 +10,7 @@
 //     so, or that the violation cannot be reduced from here;
 //   - far from a solution the Hessian may be Gauss's and Newton's, see newton.hpp;
 //   - slope and complementarity may be asked for as a share of the objective (`rough`);
-//   - given the objective of another solution (`rival`), it gives up where this one promises none lower.
+//   - given the objective of another solution (`incumbent`), it gives up where this one promises none lower.
 #pragma once
 
 #include <deque>
@@ -29,7 +29,7 @@ struct Options {
   double rough = 0.0;                // share of the objective that all but the violation of rows may reach instead
   double objective_scaling = 0.1;    // factor on the objective inside
   double seconds = INFINITY;         // wall time before it stops
-  double rival = INFINITY;           // objective of another solution, worth going on only to get below
+  double incumbent = INFINITY;       // objective of another solution, worth going on only to get below
   double mu = 0.1, push = 1e-2;      // barrier parameter and distance from bounds at the start
   int max_iterations = 500;
   int predictions = 0;               // Newton steps at the start that no bound shortens

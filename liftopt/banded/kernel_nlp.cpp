@@ -61,23 +61,41 @@ void KernelNlp::find_squares() {
 }
 
 void KernelNlp::plan_products() {
+  struct Entry {
+    int value, from, to;
+  };
+  std::vector<Entry> jacobian, transposed, hessian;
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const KernelPart& part = parts_[p];
     for (std::size_t e = 0; e < part.jacobian_row.size(); ++e) {
       const int value = first_slope_[p] + static_cast<int>(e);
       const int row = first_c_[p] + part.jacobian_row[e], column = first_y_[p] + part.jacobian_column[e];
-      by_jacobian_.push_back({value, column, row});
-      by_jacobian_transposed_.push_back({value, row, column});
+      jacobian.push_back({value, column, row});
+      transposed.push_back({value, row, column});
     }
     const auto add = [&](int value, int row, int column) {
-      by_hessian_.push_back({value, first_y_[p] + column, first_y_[p] + row});
-      if (row != column) by_hessian_.push_back({value, first_y_[p] + row, first_y_[p] + column});
+      hessian.push_back({value, first_y_[p] + column, first_y_[p] + row});
+      if (row != column) hessian.push_back({value, first_y_[p] + row, first_y_[p] + column});
     };
     int value = first_curvature_[p];
     for (std::size_t e = 0; e < part.curvature_row.size(); ++e)
       add(value++, part.curvature_row[e], part.curvature_column[e]);
     for (int j = 0; j < part.columns.size(); ++j) add(value++, j, j);
   }
+  // What makes up a sum comes together and keeps its order, so that the sum stays in a register.
+  const auto sums_of = [](std::vector<Entry>& entries) {
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.to < b.to; });
+    Sums all;
+    for (const Entry& entry : entries) {
+      if (all.sums.empty() || all.sums.back().to != entry.to) all.sums.push_back({entry.to, 0});
+      all.products.push_back({entry.value, entry.from});
+      all.sums.back().end = static_cast<int>(all.products.size());
+    }
+    return all;
+  };
+  by_jacobian_ = sums_of(jacobian);
+  by_jacobian_transposed_ = sums_of(transposed);
+  by_hessian_ = sums_of(hessian);
 }
 
 void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight) {
@@ -199,8 +217,7 @@ void KernelNlp::differentiate(int group, double scale, double* by_y) {
         by_y[(first_y_[p] + j) * width + l] = diagonal[j * width + l] * y[(first_y_[p] + j) * width + l];
       }
   }
-  knots_.operations().multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()), slopes,
-                               square_pull, by_y);
+  knots_.operations().multiply(by_jacobian_transposed_, slopes, square_pull, by_y);
 }
 
 void KernelNlp::multiply_jacobian(const double* x, double* y) {
@@ -208,7 +225,7 @@ void KernelNlp::multiply_jacobian(const double* x, double* y) {
   for (int group = 0; group < knots_.groups(); ++group) {
     knots_.select(group, columns_, x, at_knot);
     std::fill_n(c, n_c_ * lanes(), 0.0);
-    knots_.operations().multiply(by_jacobian_.data(), static_cast<int>(by_jacobian_.size()), slopes(group), at_knot, c);
+    knots_.operations().multiply(by_jacobian_, slopes(group), at_knot, c);
     add_outputs(group, c, y);
   }
   linear_.multiply(x, y);
@@ -219,8 +236,7 @@ void KernelNlp::multiply_jacobian_transposed(const double* x, double* y) {
   for (int group = 0; group < knots_.groups(); ++group) {
     pull_back(group, x, pull);
     std::fill_n(at_knot, n_y_ * lanes(), 0.0);
-    knots_.operations().multiply(by_jacobian_transposed_.data(), static_cast<int>(by_jacobian_transposed_.size()),
-                                 slopes(group), pull, at_knot);
+    knots_.operations().multiply(by_jacobian_transposed_, slopes(group), pull, at_knot);
     knots_.add_selected(group, columns_, at_knot, y);
   }
   linear_.multiply_transposed(x, y);
@@ -231,8 +247,7 @@ void KernelNlp::multiply_hessian(const double* x, double* y) {
   for (int group = 0; group < knots_.groups(); ++group) {
     knots_.select(group, columns_, x, at_knot);
     std::fill_n(sum, n_y_ * lanes(), 0.0);
-    knots_.operations().multiply(by_hessian_.data(), static_cast<int>(by_hessian_.size()), curvatures(group), at_knot,
-                                 sum);
+    knots_.operations().multiply(by_hessian_, curvatures(group), at_knot, sum);
     knots_.add_selected(group, columns_, sum, y);
   }
 }

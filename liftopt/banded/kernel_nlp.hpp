@@ -88,7 +88,7 @@ class KernelNlp : public Nlp {
   std::vector<int> first_y_, first_c_, first_slope_, first_curvature_;
   int n_y_ = 0, n_c_ = 0, n_slopes_ = 0, n_curvatures_ = 0;  // of a knot
   std::vector<std::vector<Square>> squared_;                 // of each part
-  std::vector<Product> by_jacobian_, by_jacobian_transposed_, by_hessian_;
+  Sums by_jacobian_, by_jacobian_transposed_, by_hessian_;
   Vector at_, row_values_;
   Aligned y_, c_, pull_, slopes_, curvatures_, other_y_, sum_y_, square_pull_;  // y, c, pull: of all groups
 };

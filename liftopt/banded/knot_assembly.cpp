@@ -122,6 +122,7 @@ void KnotAssembly::plan_pairs() {
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (i == 0 || pairs_[i].kind != pairs_[i - 1].kind || pairs_[i].one != pairs_[i - 1].one) strips_.push_back(i);
   strips_.push_back(pairs_.size());
+  for (const Pair& pair : pairs_) others_.push_back(pair.other);
 }
 
 void KnotAssembly::plan_places(const BlockCholesky& storage) {
@@ -213,7 +214,8 @@ void KnotAssembly::add_strip(int group, std::size_t first, std::size_t last, dou
   const int stride = width_ * width_ * lanes_, one = head.one;
   const auto add = [&](const Place& place, const double* entry, std::size_t begin) {
     double* to = matrix + place.base + one * place.by_one;
-    for (std::size_t i = begin; i < last; ++i) to[pairs_[i].other * place.by_other] += entry[(i - first) * stride];
+    entry += (begin - first) * stride;
+    for (std::size_t i = begin; i < last; ++i, entry += stride) to[others_[i] * place.by_other] += *entry;
   };
   for (int l = 0; l < knots_.knots_of(group); ++l) {
     const int knot = group * lanes_ + l;

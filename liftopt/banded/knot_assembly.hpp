@@ -47,6 +47,7 @@ class KnotAssembly : public Assembly {
   int n_entries_ = 0;
   std::vector<Pair> pairs_;            // those of one first variable together
   std::vector<std::size_t> strips_;    // the first pair of each, and the end
+  std::vector<int> others_;            // the second variable of each pair
   std::vector<Place> places_, force_places_, own_places_;  // (knots, width, width); (knots, width); (knots,)
   std::vector<Linear> linear_;
   Aligned scale_, rows_, strip_;

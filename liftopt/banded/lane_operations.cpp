@@ -18,9 +18,14 @@ LIFTOPT_INLINE Lane* lanes(double* p) {
 }
 
 template <class Lane>
-LIFTOPT_INLINE void multiply(const Product* products, int count, const double* values, const double* from, double* to) {
-  for (const Product* p = products; p != products + count; ++p)
-    lanes<Lane>(to)[p->to] += lanes<Lane>(values)[p->value] * lanes<Lane>(from)[p->from];
+LIFTOPT_INLINE void multiply(const Sums& all, const double* values, const double* from, double* to) {
+  const Product* p = all.products.data();
+  for (const Sum& sum : all.sums) {
+    Lane total = lanes<Lane>(to)[sum.to];
+    for (const Product* end = all.products.data() + sum.end; p != end; ++p)
+      total += lanes<Lane>(values)[p->value] * lanes<Lane>(from)[p->from];
+    lanes<Lane>(to)[sum.to] = total;
+  }
 }
 
 template <class Lane>
@@ -130,8 +135,8 @@ LIFTOPT_INLINE void condense(const Pair& pair, const double* basis, int width, c
 
 #define LIFTOPT_LANES(NAME, TARGET, LANE)                                                                              \
   namespace NAME {                                                                                                     \
-  TARGET void multiply(const Product* products, int count, const double* values, const double* from, double* to) {     \
-    banded::multiply<LANE>(products, count, values, from, to);                                                         \
+  TARGET void multiply(const Sums& sums, const double* values, const double* from, double* to) {                       \
+    banded::multiply<LANE>(sums, values, from, to);                                                                    \
   }                                                                                                                    \
   TARGET void interpolate(const double* basis, int width, const double* points, int stride, int n, double* y) {        \
     banded::interpolate<LANE>(basis, width, points, stride, n, y);                                                     \

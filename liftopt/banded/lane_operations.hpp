@@ -8,9 +8,16 @@ namespace banded {
 constexpr int kOrders = 3;    // value, first and second derivative
 constexpr int kMostNear = 4;  // control points that may act at one knot
 
-// to[to] += values[value] from[from], all vectors.
+// Products values[value] from[from] of vectors; a sum of them is added to to[to]. Each sum starts where the last ends.
 struct Product {
-  int value, from, to;
+  int value, from;
+};
+struct Sum {
+  int to, end;
+};
+struct Sums {
+  std::vector<Product> products;
+  std::vector<Sum> sums;
 };
 
 // rows[to] = or += scale[row] factor slopes[from].
@@ -36,7 +43,7 @@ struct Pair {
 };
 
 struct LaneOperations {
-  void (*multiply)(const Product* products, int count, const double* values, const double* from, double* to);
+  void (*multiply)(const Sums& sums, const double* values, const double* from, double* to);
   // y (orders, n) = basis (orders, width) points (width, stride); and transposed.
   void (*interpolate)(const double* basis, int width, const double* points, int stride, int n, double* y);
   void (*interpolate_transposed)(const double* basis, int width, const double* y, int stride, int n, double* points);

@@ -1,8 +1,8 @@
 """The constraints by name: rows ``g = G C + A x``, their bounds, and what each row means.
 
-Numbers in brackets are the paper's constraints. Those of time-independent rows that the spline satisfies by
-construction (3: locked bases, 9: rest at both ends) or that are bounds on unknowns (1: joint limits, 5: range of
-motion of the object, 8: poses at the ends) need no row.
+Numbers in brackets are the paper's constraints. Some need no row: the spline satisfies them by construction (3: locked
+bases, 9: rest at both ends), or they are bounds on unknowns (1: joint limits, 5: range of motion of the object,
+8: poses at the ends).
 """
 
 from __future__ import annotations

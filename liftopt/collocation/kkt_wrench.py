@@ -1,4 +1,4 @@
-"""Outputs and slopes of the kernels for wrenches, recomputed with Pinocchio; ``kkt`` without moments is the rest."""
+"""Outputs and slopes of the kernels for wrenches, recomputed with Pinocchio; ``kkt`` has those without moments."""
 
 from __future__ import annotations
 

@@ -57,8 +57,8 @@ class Team:
         Args:
             agents: in the order of the object's grasp frames.
             lifted: the object.
-            progress: hears of it when that takes long.
-            like: a team whose kernels are taken if they are the ones.
+            progress: called with a line of text when that takes long.
+            like: a team whose kernels are used again if they fit.
         """
         _check(agents, lifted)
         requests = kernel_requests(agents, lifted)

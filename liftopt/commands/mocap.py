@@ -90,9 +90,9 @@ def mocap(args: argparse.Namespace) -> str:
     Raises:
         InputError: a file, the mapping or an option is wrong.
     """
+    from liftopt.lab.mocap.from_markers import Load, read_recording, recorded_lift
     from liftopt.lab.mocap.marker_map import Person, load_marker_map
     from liftopt.lab.mocap.recorded_file import save_recorded
-    from liftopt.lab.mocap.recorded_lift import Load, read_recording, recorded_lift
     from liftopt.lab.mocap.trial_part import TrialPart, ignored_markers
     from liftopt.multibody.bounds import checked_number
 

@@ -1,4 +1,4 @@
-"""Planning a lift again and again, for a controller or a study, while what is lifted and by whom changes little.
+"""Planning a lift again and again, for a controller or a study, while object and agents change little.
 
 Kernels, solvers and the last optimum with its multipliers are kept. A scenario that changes numbers only - masses,
 heights, stature, where they stand, duration, weights - is solved from there in a few Newton steps::
@@ -46,7 +46,7 @@ class Replanner:
         """Start without an optimum.
 
         Args:
-            progress: hears one line at a time of what is going on.
+            progress: called with one line at a time about what is going on.
             cache: that others use too; None: one of its own.
         """
         self.latest: Candidate | None = None

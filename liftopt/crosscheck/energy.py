@@ -72,12 +72,12 @@ def energy_books(solution: Solution, panels: int) -> tuple[EnergyBooks, ...]:
     books = [_agent(*pair, dense.time, factor) for pair in zip(models, dense.agents, strict=True)]
     held_model = object_of(solution.scenario, solution.urdfs)
     books.append(_object(held_model, dense.object, dense.agents, dense.time, factor))
-    *agents, held = books
+    *agents, lifted = books
     total = {
         "torques": np.sum([agent.work["torques"] for agent in agents], axis=0),
-        "unbalanced": np.sum([book.work["grasp forces"] for book in books], axis=0) + held.work["unbalanced"],
+        "unbalanced": np.sum([book.work["grasp forces"] for book in books], axis=0) + lifted.work["unbalanced"],
     }
-    if TURNING in held.work:
+    if TURNING in lifted.work:
         total[TURNING] = np.sum([book.work[TURNING] for book in books if TURNING in book.work], axis=0)
     return (*books, EnergyBooks("all", np.sum([book.change for book in books], axis=0), total))
 
@@ -111,22 +111,22 @@ def _agent(model: Agent, agent: AgentTrajectory, time: Array, factor: int) -> En
 
 
 def _object(
-    model: LiftedObject, held: ObjectTrajectory, agents: Sequence[AgentTrajectory], time: Array, factor: int
+    model: LiftedObject, lifted: ObjectTrajectory, agents: Sequence[AgentTrajectory], time: Array, factor: int
 ) -> EnergyBooks:
     data, energy, unbalanced = model.model.createData(), np.zeros(len(time)), np.zeros(len(time))
     for k in range(len(time)):
-        q, v, _ = free_flyer_state(held.pose[k], held.pose_velocity[k], held.pose_acceleration[k])
+        q, v, _ = free_flyer_state(lifted.pose[k], lifted.pose_velocity[k], lifted.pose_acceleration[k])
         energy[k] = pin.computeMechanicalEnergy(model.model, data, q, v)
-        unbalanced[k] = held.wrench[k, :3] @ held.velocity[k, :3] + held.wrench[k, 3:] @ v[3:]
+        unbalanced[k] = lifted.wrench[k, :3] @ lifted.velocity[k, :3] + lifted.wrench[k, 3:] @ v[3:]
     power, turning = np.zeros(len(time)), np.zeros(len(time))
     for i, agent in enumerate(agents):
-        lever, spin = held.grasp_position[:, i] - held.pose[:, :3], held.velocity[:, 3:]
-        power += (agent.grasp_force * (held.velocity[:, :3] + np.cross(spin, lever))).sum(axis=1)
+        lever, spin = lifted.grasp_position[:, i] - lifted.pose[:, :3], lifted.velocity[:, 3:]
+        power += (agent.grasp_force * (lifted.velocity[:, :3] + np.cross(spin, lever))).sum(axis=1)
         turning += (agent.grasp_moment * spin).sum(axis=1)
     work = {"grasp forces": _integral(power, time, factor), "unbalanced": _integral(unbalanced, time, factor)}
     if any(agent.grasp.moments for agent in agents):
         work[TURNING] = _integral(turning, time, factor)
-    return EnergyBooks(held.name, (energy - energy[0])[::factor], work)
+    return EnergyBooks(lifted.name, (energy - energy[0])[::factor], work)
 
 
 def _integral(power: Array, time: Array, factor: int) -> Array:

@@ -92,7 +92,7 @@ class HermiteSimpson:
     """A lift on N intervals by Hermite-Simpson.
 
     Attributes:
-        agents, held, task: the same as the solve's.
+        agents, object, task: the same as the solve's.
         intervals: N, at least 2.
         still: whether accelerations are zero at both ends (eq. 19). In continuous time that asks nothing: an
             acceleration may jump. On a mesh it costs a ramp over the first and the last interval, first order in h.

@@ -68,6 +68,7 @@ class Instant:
     """Functions of y = (q, v, a, f, tau) at one instant: coordinates, rates, grasp forces, joint torques.
 
     Attributes:
+        coordinates: what moves.
         dynamics: y -> (n_joints,) torques less those that the motion and the grasp reaction need [Nm].
         balance: y -> (6,) force, world axes, and moment, body axes, that the object's motion needs, less what the
             grasps give [N, Nm].
@@ -84,7 +85,7 @@ class Instant:
     workspace: Any
 
 
-def instant(agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask) -> Instant:
+def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> Instant:
     """Write the equations down for agents that hold one object, in the order of its grasp frames."""
     at = Coordinates.of(agents, task)
     q, v, a = (ca.SX.sym(name, at.n_q) for name in ("q", "v", "a"))
@@ -96,7 +97,7 @@ def instant(agents: tuple[Agent, ...], held: LiftedObject, task: LiftTask) -> In
         *(_agent(agent, q[s], v[s], a[s], f) for agent, s, f in zip(agents, own, forces, strict=True)), strict=True
     )
     pose = [_six(at, x[at.n_joints :], constant) for x, constant in ((q, at.locked_pose), (v, 0.0), (a, 0.0))]
-    balance, *edges = _object_equations(held)(*pose, force)
+    balance, *edges = _object_equations(lifted)(*pose, force)
     distances = [
         ca.dot(agent.workspace.normal, hand) - agent.workspace.offset
         for agent, hand in zip(agents, hands, strict=True)
@@ -131,9 +132,9 @@ def _agent(agent: Agent, q: Any, v: Any, a: Any, force: Any) -> tuple[Any, Any]:
     return tau, placement.translation + ca.mtimes(placement.rotation, lever)
 
 
-def _object_equations(held: LiftedObject) -> Any:
+def _object_equations(lifted: LiftedObject) -> Any:
     """Return (pose, rates, second derivatives, forces) -> balance and each grasp point, see ``Instant``."""
-    body, gravity, m = held.model.inertias[1], held.model.gravity.linear, len(held.grasp_frames)
+    body, gravity, m = lifted.model.inertias[1], lifted.model.gravity.linear, len(lifted.grasp_frames)
     pose, rate, second = (ca.SX.sym(name, OBJECT_SIZE) for name in ("pose", "rate", "second"))
     force = ca.SX.sym("force", FORCE_SIZE * m)
     turn = _turn_x(pose[3]) @ _turn_y(pose[4]) @ _turn_z(pose[5])
@@ -141,7 +142,9 @@ def _object_equations(held: LiftedObject) -> Any:
     omega = ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0])
     alpha = ca.jtimes(omega, ca.vertcat(pose, rate), ca.vertcat(rate, second))
     inertia = ca.DM(body.inertia)
-    levers = [ca.DM(held.model.frames[held.model.getFrameId(name)].placement.translation) for name in held.grasp_frames]
+    levers = [
+        ca.DM(lifted.model.frames[lifted.model.getFrameId(name)].placement.translation) for name in lifted.grasp_frames
+    ]
     newton = body.mass * (second[:3] - gravity)
     euler = inertia @ alpha + ca.cross(omega, inertia @ omega)
     for lever, grip in zip(levers, ca.vertsplit(force, FORCE_SIZE), strict=True):

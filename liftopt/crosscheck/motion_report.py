@@ -33,7 +33,7 @@ def motion_report(solution: Solution, progress: Progress | None = None) -> tuple
 
     Args:
         solution: a solved lift.
-        progress: hears one line a stage.
+        progress: called with one line at each stage.
 
     Raises:
         InputError: MuJoCo is not installed.
@@ -55,7 +55,7 @@ def result_report(solution: Solution, transcription: bool, progress: Progress | 
     Args:
         solution: a solved lift.
         transcription: whether to solve it again by two transcriptions on five meshes, which takes minutes.
-        progress: hears one line a stage.
+        progress: called with one line at each stage.
 
     Raises:
         InputError: the solution is not solved, or MuJoCo is not installed.

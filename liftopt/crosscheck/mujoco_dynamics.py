@@ -55,11 +55,11 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
     mujoco = import_mujoco()
     model = spec_of(solution.urdfs.values()).compile()
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-    data, held = mujoco.MjData(model), solution.object
-    states = states_of(model, solution.agents, held)
+    data, lifted = mujoco.MjData(model), solution.object
+    states = states_of(model, solution.agents, lifted)
     bodies = [model.body(f"{agent.name}_grasp").id for agent in solution.agents]
     edges = [model.body(f"grasp_{agent.name}").id for agent in solution.agents]
-    top = model.body(held.name).id
+    top = model.body(lifted.name).id
     found, gaps = np.zeros_like(states.tau), np.zeros(len(solution.agents))
     for k in range(len(solution.time)):
         data.qpos[:], data.qvel[:], data.qacc[:] = states.qpos[k], states.qvel[k], states.qacc[k]
@@ -77,10 +77,11 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
         scale = np.maximum(np.abs(agent.tau).max(axis=0), np.finfo(float).tiny)
         results.append(InverseDynamics(agent.name, agent.joint_names, agent.tau, found[:, dofs], scale, float(gap)))
     weight = float(model.body_mass[top] * 9.81)
-    points = held.grasp_position[0]
-    span = np.linalg.norm(np.ptp(points, axis=0)) / 2 if len(points) > 1 else np.linalg.norm(points - held.pose[0, :3])
-    first = int(model.joint(f"{held.name}_free").dofadr[0])
+    points = lifted.grasp_position[0]
+    apart = np.ptp(points, axis=0) / 2 if len(points) > 1 else points - lifted.pose[0, :3]
+    span = np.linalg.norm(apart)
+    first = int(model.joint(f"{lifted.name}_free").dofadr[0])
     labels = tuple(f"{kind} {axis}" for kind in ("force", "moment") for axis in "xyz")
     scale = weight * np.array([1.0, 1.0, 1.0, span, span, span])
     theirs = found[:, first : first + 6]
-    return (*results, InverseDynamics(held.name, labels, held.wrench, theirs, scale, 0.0))
+    return (*results, InverseDynamics(lifted.name, labels, lifted.wrench, theirs, scale, 0.0))

@@ -101,7 +101,7 @@ def mesh_study(solution: Solution, meshes: Sequence[int] = MESHES, progress: Pro
     Args:
         solution: where to start; the problem is that of its scenario.
         meshes: numbers of intervals, each twice the one before.
-        progress: hears one line a mesh.
+        progress: called with one line for each mesh.
 
     Raises:
         SolverError: IPOPT cannot run.
@@ -144,11 +144,11 @@ def points_of(motion: Motion, at: Coordinates) -> Points:
     def joints(kind: str) -> Array:
         return np.hstack([getattr(agent, kind)[:, agent.moving] for agent in motion.agents])
 
-    held = motion.object
+    lifted = motion.object
     return Points(
-        at.select(joints("q"), held.pose),
-        at.select(joints("v"), held.pose_velocity),
-        at.select(joints("a"), held.pose_acceleration),
+        at.select(joints("q"), lifted.pose),
+        at.select(joints("v"), lifted.pose_velocity),
+        at.select(joints("a"), lifted.pose_acceleration),
         np.hstack([agent.grasp_force for agent in motion.agents]),
         joints("tau"),
     )

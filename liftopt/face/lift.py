@@ -67,7 +67,7 @@ def solve(scenario: Scenario, *, progress: Progress | None = None) -> Solution:
 
     Args:
         scenario: what to lift.
-        progress: hears one line at a time of what is going on.
+        progress: called with one line at a time about what is going on.
 
     Raises:
         InputError: a value of the scenario cannot be used.

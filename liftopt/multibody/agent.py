@@ -56,8 +56,8 @@ class HalfSpace:
 class Grasp:
     """What an agent's hold on the object transmits; by default a force at a point, in any direction (the paper's).
 
-    A hold that transmits moments is one of a hand that cannot turn freely on the object: its orientation is held
-    too. Its reference is that in which the hand's grip axes are the object's axes.
+    Where it transmits moments, the hand cannot turn freely on the object: its orientation has a limit too, counted from
+    the one in which the hand's grip axes are the object's axes.
 
     Attributes:
         moments: whether it transmits a moment too.

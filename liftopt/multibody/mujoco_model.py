@@ -106,9 +106,9 @@ class States:
     tau: Array
 
 
-def states_of(model: Any, agents: Sequence[AgentTrajectory], held: ObjectTrajectory) -> States:
+def states_of(model: Any, agents: Sequence[AgentTrajectory], lifted: ObjectTrajectory) -> States:
     """Return a motion for a model of ``spec_of``; joints that are welded there are left out."""
-    times = len(held.pose)
+    times = len(lifted.pose)
     qpos = np.zeros((times, model.nq))
     qvel, qacc, tau = np.zeros((3, times, model.nv))
     for agent in agents:
@@ -116,10 +116,10 @@ def states_of(model: Any, agents: Sequence[AgentTrajectory], held: ObjectTraject
             if dof >= 0:
                 qpos[:, position], qvel[:, dof], qacc[:, dof] = agent.q[:, j], agent.v[:, j], agent.a[:, j]
                 tau[:, dof] = agent.tau[:, j]
-    free = model.joint(f"{held.name}_free")
+    free = model.joint(f"{lifted.name}_free")
     at, rate = int(free.qposadr[0]), slice(int(free.dofadr[0]), int(free.dofadr[0]) + 6)
-    qpos[:, at : at + 3], qpos[:, at + 3 : at + 7] = held.pose[:, :3], np.roll(held.quaternion, 1, axis=1)
-    qvel[:, rate], qacc[:, rate] = (_angular_in_body(held, twist) for twist in (held.velocity, held.acceleration))
+    qpos[:, at : at + 3], qpos[:, at + 3 : at + 7] = lifted.pose[:, :3], np.roll(lifted.quaternion, 1, axis=1)
+    qvel[:, rate], qacc[:, rate] = (_angular_in_body(lifted, twist) for twist in (lifted.velocity, lifted.acceleration))
     return States(qpos, qvel, qacc, tau)
 
 
@@ -133,7 +133,7 @@ def joint_places(model: Any, agent: AgentTrajectory) -> list[tuple[int, int]]:
     return places
 
 
-def _angular_in_body(held: ObjectTrajectory, twist: Array) -> Array:
+def _angular_in_body(lifted: ObjectTrajectory, twist: Array) -> Array:
     """Return a twist (K, 6) with its angular part in the body's axes; of an acceleration too, since w x w = 0."""
-    rotation = Rotation.from_quat(held.quaternion)
+    rotation = Rotation.from_quat(lifted.quaternion)
     return np.hstack([twist[:, :3], rotation.inv().apply(twist[:, 3:])])

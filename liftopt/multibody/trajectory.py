@@ -148,14 +148,14 @@ def bearing(model: pin.Model, carrier: int) -> Array:
 
 
 def object_trajectory(
-    held: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array, moments: Array | None = None
+    lifted: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array, moments: Array | None = None
 ) -> ObjectTrajectory:
     """Return the object's trajectory from its six coordinates and rates (K, 6) and all grasps' forces and moments.
 
     Both are (K, 3 agents); without moments there are none.
     """
-    model, data = held.model, held.model.createData()
-    frames = [model.getFrameId(name) for name in held.grasp_frames]
+    model, data = lifted.model, lifted.model.createData()
+    frames = [model.getFrameId(name) for name in lifted.grasp_frames]
     rotation, (q, v, a) = attitude(x[:, 3:])[0], free_flyer_state(x, xdot, xddot)
     generalized, point = np.zeros((len(x), 6)), np.zeros((len(x), len(frames), 3))
     for k in range(len(x)):
@@ -171,7 +171,7 @@ def object_trajectory(
                         generalized[:, 3:] - turned(rotation.swapaxes(1, 2), moment)])  # fmt: skip
     velocity = np.hstack([xdot[:, :3], turned(rotation, v[:, 3:])])
     acceleration = np.hstack([xddot[:, :3], turned(rotation, a[:, 3:])])
-    return ObjectTrajectory(held.name, x, xdot, xddot, q[:, 3:], velocity, acceleration, point, wrench)
+    return ObjectTrajectory(lifted.name, x, xdot, xddot, q[:, 3:], velocity, acceleration, point, wrench)
 
 
 def free_flyer_state(x: Array, xdot: Array, xddot: Array) -> tuple[Array, Array, Array]:

@@ -20,7 +20,7 @@ from liftopt.types import Progress
 
 T = TypeVar("T")
 BANDED, IPOPT = "banded", "ipopt"  # solvers by name
-# Of the objective inside IPOPT: with a larger one it takes more iterations (docs/tuning.md).
+# Factor on the objective inside IPOPT: with a larger one it takes more iterations (docs/tuning.md).
 LIFT_SCALING = 0.03
 
 
@@ -41,7 +41,7 @@ class SolverCache:
         self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
-        """Return the lift of a scenario on a mesh; ``progress`` hears of it when kernels must be compiled first."""
+        """Return the lift of a scenario on a mesh; ``progress`` is called when kernels must be compiled first."""
         agents = tuple(
             self._kept(name, agent_key(scenario, name), partial(agent_of, scenario, name)) for name in scenario.agents
         )
@@ -86,7 +86,7 @@ class SolverCache:
         return kept[1]
 
     def postures(self, problem: Problem, scenario: Scenario, progress: Progress | None = None) -> PostureSolver:
-        """Return the solver of static postures for a lift; ``progress`` hears of kernels that are compiled first."""
+        """Return the solver of static postures for a lift; ``progress`` is called when kernels must be compiled."""
         workers = scenario.solver.workers
         self._postures = PostureSolver(problem.team, problem.task, progress, like=self._postures, workers=workers)
         return self._postures

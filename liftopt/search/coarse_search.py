@@ -24,11 +24,11 @@ from liftopt.search.optimum_on_mesh import MESH
 from liftopt.search.session import Session
 from liftopt.search.variations import vary
 
-# A start is given up where it promises nothing below so many times the optimum of the first. A margin finds more: of
+# A start is given up where it promises nothing below so many times the optimum of the first. A margin finds more: in
 # heavy or long lifts the objective falls late.
 MARGIN = 1.2
-# Variations of the optima without a gain, for each try, after which there are no more: so many times the chance that
-# is left to find an optimum that is not known (``_unseen``), at most the second. Where it is small they gain little.
+# Variations end after so many without a gain, for each try: the first times the chance that a start leads to an optimum
+# not known yet (``_unseen``), at most the second. Where that chance is small, variations gain little.
 IDLE, MOST_IDLE = 6.0, 2.0
 # Variations in all, for each try: where gain follows gain, more would take longer than all the rest.
 MOST_VARIED = 8
@@ -42,7 +42,7 @@ def coarse_search(
     """Return the optima on a coarse mesh that may lead to the best one, the best first; none if none was found.
 
     Args:
-        session: hears of it.
+        session: of the search.
         spline: the mesh that was asked for.
         guesses: where to start from.
         tries: starts to be tried.

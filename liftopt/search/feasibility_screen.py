@@ -24,7 +24,7 @@ MORE_ITERATIONS = 400
 STRONGEST = 64.0
 # Postures that differ by less in every joint [rad] are one; so many of them are tried further.
 DIFFERENT, NEAREST = 0.1, 6
-# So many limits are named that a posture exceeds.
+# At most so many exceeded limits are named.
 NAMED = 3
 # Ratio of the strengths at which the bisection ends.
 PRECISION = 1.01
@@ -35,8 +35,8 @@ NOTICEABLE = 0.01
 def too_fast(problem: Problem) -> InfeasibilityReason | None:
     """Return how much longer the lift must last for the object's speed limit, or None if it lasts long enough."""
     task = problem.task
-    # From one control point to the next a coordinate goes as far as the limit of that slope lets it, in all by a share
-    # of the distance at full speed.
+    # The speed limit bounds the step from each control point to the next; all steps together cover a share of the
+    # distance at full speed.
     share = (1.0 / problem.mesh.slope[:, 1:].diagonal()).sum()
     needed = np.abs(task.end - task.start) / task.pose_velocity / share
     shortest = float(np.nanmax(needed))

@@ -22,12 +22,12 @@ from liftopt.types import Array, Progress
 
 # Postures nearer than this in every joint [rad] lead to the same ones.
 SAME_POSTURE = 0.03
-# Seeds tried at once, at least, and rounds of them after which an end that no posture was found for is given up. There
-# are as many seeds as starts, for many starts need different postures. Fewer lead to worse optima (docs/tuning.md).
+# At least so many seeds are tried at once; after so many rounds an end without a posture is given up. There are as many
+# seeds as starts, for many starts need different postures. Fewer lead to worse optima (docs/tuning.md).
 SEEDS, ROUNDS = 12, 3
 NAIVE_FORCE = 10.0
-# A joint that is at a limit for this share of the time, to this [rad], is pressed against it; where it is turned to it
-# may miss its range by so much [rad].
+# A joint presses against a limit if it is nearer than PRESSED [rad] to it for this share of the time. Turned back, it
+# may miss its range by MISSED [rad].
 PRESSED_SHARE, PRESSED, MISSED = 0.2, 0.01, 0.6
 
 
@@ -98,9 +98,9 @@ def initial_guesses(
         most: moves of one agent.
         seed: of the random seeds; equal seeds give equal starts where the deadline does not cut the search short.
         deadline: past which the search stops.
-        progress: hears of progress.
+        progress: called with one line at a time about what is going on.
         postures: solver for the problem's team, to be used again; None: one is made.
-        seeds: postures that are searched from, at least; fewer than moves or ``SEEDS`` are not.
+        seeds: for the posture search, at least so many, and at least ``most`` and ``SEEDS``.
         rounds: of seeds, after which an end without a posture is given up.
     """
     task, rng = problem.task, np.random.default_rng(seed)
@@ -135,7 +135,7 @@ def posture_starts(
 def _ends(
     postures: PostureSolver, problem: Problem, seeds: list[Array], deadline: Deadline
 ) -> tuple[list[Posture], list[Posture]]:
-    """Return postures at the start, also those that lead back from the end, and at the end."""
+    """Return postures at the start, among them those found back from the end, and postures at the end."""
     task = problem.task
 
     def found(pose: Array, seeds: list[Array]) -> list[Posture]:

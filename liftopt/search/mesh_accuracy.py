@@ -39,7 +39,7 @@ def estimate(cache: SolverCache, candidate: Candidate, deadline: Deadline, progr
         cache: where solvers come from.
         candidate: solved.
         deadline: past which the objective is not estimated.
-        progress: hears of it.
+        progress: called when a solve on another mesh begins.
     """
     known, n = Accuracy.between_knots(candidate.verification), candidate.spline.intervals
     for intervals in (2 * n, n // 2):

@@ -95,7 +95,7 @@ def continue_on_mesh(
     the same limits. So the solver starts once more from the motion of the best, without them.
 
     Args:
-        session: hears of every solve.
+        session: of the search; it records every solve.
         candidates: on another mesh, the best first.
         intervals: of the mesh they are taken to.
         margin: how many times the best objective is still of interest; a solve that promises none below is given up.

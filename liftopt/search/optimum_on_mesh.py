@@ -15,9 +15,7 @@ from liftopt.types import Progress
 FASTEST_FIRST = (BANDED, IPOPT)
 IPOPT_ITERATIONS = 200  # from each start, where it takes over from another solver
 MESH = ", N = "  # between the name of a start and the mesh its motion was taken to
-WITHOUT_MULTIPLIERS = (
-    ", without multipliers on "  # before the mesh to which the motion of a start was taken without its multipliers
-)
+WITHOUT_MULTIPLIERS = ", without multipliers on "  # likewise, for the motion alone
 
 
 def optimum_on_mesh(
@@ -39,9 +37,9 @@ def optimum_on_mesh(
         intervals: of the other mesh.
         solvers: names, the first to be tried first.
         deadline: past which solvers stop.
-        progress: hears of kernels that are compiled.
+        progress: called when kernels must be compiled.
         incumbent: an optimum on the other mesh; where nothing lower is in sight, or the solver fails, none is left.
-        on_solve: hears the name of the start and its result, be it an optimum or given up for the incumbent.
+        on_solve: called with the name of the start and its result, an optimum or given up for the incumbent.
         without_multipliers: start from the motion alone.
     """
     spline, scenario = candidate.spline.on(intervals), candidate.scenario

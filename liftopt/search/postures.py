@@ -30,8 +30,8 @@ POSTURE_WEIGHT = 1e-2
 SPREAD = 0.35
 MAX_ITERATIONS = 100
 TOLERANCE = 1e-7
-# Digits after the point of what a solver starts from. Others are rounded differently by other processors, and from
-# there on every step makes them differ more.
+# Starts are rounded to so many digits after the point. The last digits differ from processor to processor, and every
+# step of a solver makes the difference larger.
 DIGITS = 4
 # Postures are compared, not kept: with these more seeds converge, in fewer iterations (docs/tuning.md).
 SCALING, ROUGH = 0.01, 1e-4
@@ -72,8 +72,8 @@ class PostureSolver:
         Args:
             team: who holds what.
             task: its limits and weights; poses are given to ``solve``.
-            progress: hears of it when kernels must be compiled first.
-            like: another one, whose solvers are taken if they fit.
+            progress: called when kernels must be compiled first.
+            like: another one, whose solvers are used again if they fit.
             workers: postures solved at a time.
         """
         self.problem: Problem = Problem(team, task, like.problem.mesh if like else Mesh.at_rest(), POSTURE_WEIGHT)

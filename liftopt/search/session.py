@@ -1,4 +1,4 @@
-"""What the stages of one search share: the scenario, problems and solvers, the clock, and what is to be told."""
+"""What the stages of one search share: the scenario, problems and solvers, the clock, and notes for the user."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from liftopt.solution.solution import CUT_SHORT, StartRecord
 from liftopt.types import Progress
 
 # How far a search goes is counted in starts and iterations. The time limit only stops what takes longer than foreseen:
-# trying what leads where at the first share of it, so that the best found can be finished, and that at the second, so
-# that it can be verified and written.
+# no start is tried after the first share of it, so that the best found can be finished; finishing ends at the second,
+# so that the lift can be verified and written.
 TRYING_SHARE, FINISHING_SHARE = 0.7, 0.9
 CUT = "the time limit of {limit:g} s {what} ({stage})"
 GIVEN_UP = {PRUNED: "given up: nothing better than another start in sight"}
@@ -30,9 +30,10 @@ class Session:
         spline: the motions it asks for, on its own number of intervals.
         cache: where problems and solvers come from.
         postures: solver of static postures of its team.
-        limit: of time, for the whole search but for what is compiled before.
-        records: starts that were tried and count, with where they led.
+        limit: deadline of the whole search; it begins after kernels and solvers are compiled.
+        records: the starts that count, each with where it led.
         notes: what the user should know.
+        cut: where the time limit ended the search too early, in one line; empty where it did not.
     """
 
     def __init__(self, scenario: Scenario, cache: SolverCache, progress: Progress | None = None) -> None:
@@ -40,8 +41,8 @@ class Session:
 
         Args:
             scenario: what to lift.
-            cache: that earlier and later lifts use too.
-            progress: hears one line at a time of what is going on.
+            cache: shared with earlier and later lifts.
+            progress: called with one line at a time about what is going on.
 
         Raises:
             InputError: a value of the scenario cannot be used.
@@ -64,7 +65,7 @@ class Session:
 
     @property
     def deadline(self) -> Deadline:
-        """Past which no more is tried; after ``finish`` a later one, for what was found already."""
+        """When trying starts ends; after ``finish``, when finishing what was found ends."""
         return self.limit.share(FINISHING_SHARE if self._finishing else TRYING_SHARE)
 
     def problem(self, spline: RestToRestSpline) -> Problem:
@@ -99,7 +100,7 @@ class Session:
         self._prepared = time.monotonic()
 
     def finish(self) -> None:
-        """Go on to finish what was found: the time that was kept for it may be used now."""
+        """Go on to finish what was found, in the time that was kept for it."""
         self.note_time()
         self._finishing = True
 

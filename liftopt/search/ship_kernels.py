@@ -26,7 +26,7 @@ def ship(folder: str, every_processor: bool = False) -> bool:
     """Compile the kernels into a folder and return whether all are there.
 
     Args:
-        folder: that takes those which are not installed with the package.
+        folder: for the kernels that are not installed with the package.
         every_processor: compile for all of the kind of this one, so that the wheel serves other machines too.
     """
     os.environ["LIFTOPT_CACHE"] = folder
@@ -34,10 +34,10 @@ def ship(folder: str, every_processor: bool = False) -> bool:
     whole = True
     for grasp in get_args(GRASPS):
         scenario = load_scenario(changes=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
-        team = Team.of(agents_of(scenario), object_of(scenario), _say)
+        team = Team.of(agents_of(scenario), object_of(scenario), _print)
         whole = whole and all(kernel.compiled for kernel in team.kernels)
         for extensions in processors:
-            simd = load_simd_kernels(kernel_requests(team.agents, team.object), _say, extensions)
+            simd = load_simd_kernels(kernel_requests(team.agents, team.object), _print, extensions)
             whole = whole and simd is not None
     return whole
 
@@ -51,7 +51,7 @@ def main(arguments: Sequence[str]) -> int:
     return 0 if ship(args.folder, args.every_processor) else 1
 
 
-def _say(line: str) -> None:
+def _print(line: str) -> None:
     print(line, flush=True)
 
 

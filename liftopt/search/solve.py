@@ -30,22 +30,22 @@ from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
 from liftopt.types import Progress
 
-# Postures searched from, for each start tried on a coarse mesh: with one, some lifts miss the best motion
+# Seeds of the posture search for each start tried on a coarse mesh: with one, some lifts miss the best motion
 # (docs/tuning.md).
 SEEDS_A_TRY = 2
-# Times as many starts are tried before a lift that has postures at both ends counts as impossible, and iterations of
-# each: half of those that converge take fewer.
+# Before a lift with postures at both ends counts as impossible, so many times as many starts are tried, each for so
+# many iterations: half of those that converge take fewer.
 WIDER, LEAN = 2, 60
 
 
 def solve(scenario: Scenario, *, progress: Progress | None = None, cache: SolverCache | None = None) -> Solution:
     """Solve a scenario from several starts and return the best verified solution.
 
-    Where there is none, the solution returned says why in ``status`` and holds the best iterate.
+    Where there is none, the solution says why in ``status`` and holds the best iterate.
 
     Args:
         scenario: what to lift.
-        progress: hears one line at a time of what is going on.
+        progress: called with one line at a time about what is going on.
         cache: keeps what the next lift can use again; None keeps nothing.
 
     Raises:
@@ -90,7 +90,7 @@ def search(session: Session) -> Found:
 def search_wider(session: Session) -> Found | None:
     """Return the best lift that many more starts lead to; None if they lead to none.
 
-    Where postures hold the object at both ends, that no start has led to a lift does not prove that there is none.
+    Where postures hold the object at both ends there may be a lift, even if no start has led to one so far.
     """
     tries, seed = WIDER * session.scenario.solver.tries, session.scenario.solver.seed + 1
     if not tries or session.deadline.passed:

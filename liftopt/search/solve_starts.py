@@ -30,7 +30,7 @@ def solve_starts(session: Session, spline: RestToRestSpline, starts: Sequence[In
     """Return the best verified lift that the starts lead to, or the best iterate and why it is no lift.
 
     Args:
-        session: hears of every solve.
+        session: of the search; it records every solve.
         spline: the mesh.
         starts: on that mesh, at least one, the most promising first.
     """

@@ -28,12 +28,12 @@ from liftopt.types import Array
 
 STARTS = 2  # of each changed scenario
 ITERATIONS = 150  # of each start
-ENOUGH = 4  # changes that are told
-# Work for all changes, and what a search for postures counts as: in iterations of the solver on so many intervals, by
-# the time they take.
+ENOUGH = 4  # changes that are suggested
+# Work for all changes, and what one search for postures counts as. The unit is the time of one iteration of the solver
+# on so many intervals.
 WORK, POSTURES, INTERVALS = 3000.0, 70.0, 20
-HOLDS = 4.0  # likewise, whether the object can be held at both ends of a motion that is known
-# Of seeds, for postures: more rounds take the work that other changes need (docs/tuning.md).
+HOLDS = 4.0  # likewise, the check that the object can be held at both ends of a known motion
+# Rounds of seeds for postures: more take the work that other changes need (docs/tuning.md).
 ROUNDS = 1
 GROWTH = 1.6  # of a change that does not help yet
 FINEST_CHANGED = 160  # intervals of the finest mesh of a changed scenario
@@ -43,7 +43,7 @@ def suggest_changes(session: Session, found: Found, work: float = WORK) -> tuple
     """Return changes that make a scenario solvable, each solved and verified, the smallest first.
 
     Args:
-        session: past whose deadline no more is tried.
+        session: of the search; past its deadline no more is tried.
         found: what comes nearest to a lift, and why it is none.
         work: after which no more is tried, see ``WORK``.
     """
@@ -81,10 +81,10 @@ def _smallest(trials: _Trials, adjustable: Adjustable, hint: int, rest: float) -
         middle = (helps + fails) // 2
         nearer = trials.solve(adjustable, sign * middle, candidate)
         candidate, helps, fails = (nearer, middle, fails) if nearer else (candidate, helps, middle)
-    return _told(trials.scenario, adjustable, sign, candidate.scenario) if trials.verify(candidate) else None
+    return _suggested(trials.scenario, adjustable, sign, candidate.scenario) if trials.verify(candidate) else None
 
 
-def _told(scenario: Scenario, adjustable: Adjustable, sign: int, changed: Scenario) -> SuggestedChange:
+def _suggested(scenario: Scenario, adjustable: Adjustable, sign: int, changed: Scenario) -> SuggestedChange:
     """Return a change that helps, in words and by its size."""
     was, values = adjustable.values(scenario), adjustable.values(changed)
     change = abs(values[0] - was[0])

@@ -2,7 +2,7 @@
 
 The best optimum is varied first, a few times, then the next best or the best again, as in a best-first search. Each
 variation changes much of one agent's motion and leaves the rest: a joint bent the other way (``mirrored_joints.py``),
-another posture along the same path (``alternative_paths.py``), a detour by way of a posture (``via_postures.py``). All
+another posture along the same path (``alternative_paths.py``), a path by way of a posture (``via_postures.py``). All
 three kinds pay about equally (docs/tuning.md), so they take turns.
 """
 

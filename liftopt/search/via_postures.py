@@ -1,6 +1,6 @@
 """Via postures: a motion by way of a posture in which it costs little to hold the object, wherever that may be.
 
-A slow lift may gain by a detour to where the object is easily held. Its ends tell nothing of that.
+A slow lift may gain by passing where the object is easily held. Its ends tell nothing of that.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from liftopt.types import Array
 SEEDS, MOST, APART = 16, 8, 0.1
 # Share of the time to get there, and to come back.
 THERE = 0.4
-# Of a motion by way of a posture whose objective is above so many times that of the motion as it is, nothing came.
+# A motion is dropped if its objective is above so many times that of the motion as it is: such ones led to nothing.
 TOO_HIGH = 16.0
 
 

@@ -136,7 +136,7 @@ class Assessment(Sequence[Finding]):
 
 
 def percent(share: float) -> str:
-    """Return a share of a limit in percent; what misses or exceeds it by little is not told as 100."""
+    """Return a share of a limit in percent; what is a little below or above it is not rounded to 100."""
     text = f"{100 * share:.0f}"
     return text if text != "100" else f"{100 * share:.1f}".removesuffix(".0")
 

@@ -24,8 +24,8 @@ def shares(agents: Sequence[AgentTrajectory]) -> Array:
 def squeeze(agents: Sequence[AgentTrajectory], name: str | None = None) -> Array:
     """Return the part (K,) of the grasp forces that cancels [N]; positive presses the object together.
 
-    Of two hands it lies along the line between them. Of more it is what of the forces the grasp map takes to no force
-    and no moment on the object, their internal part (Kerr & Roth, 1986, Int J Robotics Research 4(4):3-17); a hand's is
+    Between two hands it lies along the line that joins them. With more it is the internal part of the forces, which
+    adds no force and no moment to the object (Kerr & Roth, 1986, Int J Robotics Research 4(4):3-17); a hand's is
     positive towards the middle of the grasps.
 
     Args:

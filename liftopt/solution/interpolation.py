@@ -36,8 +36,8 @@ def resample(solution: Solution, factor: int) -> Solution:
         agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force, moment))
         forces.append(force)
         moments.append(moment)
-    held = solution.object
-    motion = motion_between(solution.time, held.pose, held.pose_velocity, held.pose_acceleration, time)
+    lifted = solution.object
+    motion = motion_between(solution.time, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration, time)
     return replace(
         solution,
         time=time,

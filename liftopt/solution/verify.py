@@ -56,7 +56,7 @@ def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64])
 
 
 def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
-    """Eq. 17 on the rows that the grasps serve; the other one, and all between knots, are reported."""
+    """Eq. 17 on the rows that the grasps serve; the other row, and all rows between knots, are only reported."""
     tolerance, team = problem.task.balance_tolerance, problem.team
     served = served_rows(team.agents, team.object, tolerance)
     moments = any(grasp.moments for grasp in team.grasps)
@@ -77,7 +77,7 @@ def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
 
 def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list[Check]:
     """Eqs. 11, 12, 14, 15 and the limits on speed and grasp force: how far each is exceeded."""
-    task, held, names = problem.task, motion.object, [f"{motion.object.name} {c}" for c in OBJECT_COORDINATES]
+    task, lifted, names = problem.task, motion.object, [f"{motion.object.name} {c}" for c in OBJECT_COORDINATES]
     position, speed, torque, force = [], [], [], []
     for agent in motion.agents:
         q, v, tau = (values[:, agent.moving] for values in (agent.q, agent.v, agent.tau))
@@ -87,8 +87,8 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         torque.append(np.maximum(bounds.tau_lower - tau, tau - bounds.tau_upper))
         force.append(np.linalg.norm(agent.grasp_force, axis=1) - task.max_grasp_force)
     joints = [name for agent in motion.agents for name in agent.moving_joints]
-    position.append(np.maximum(task.pose_lower - held.pose, held.pose - task.pose_upper))
-    speed.append(np.abs(held.pose_velocity) - task.pose_velocity)
+    position.append(np.maximum(task.pose_lower - lifted.pose, lifted.pose - task.pose_upper))
+    speed.append(np.abs(lifted.pose_velocity) - task.pose_velocity)
     agents = [agent.name for agent in motion.agents]
     checks = [
         _worst("position limits", np.hstack(position), limit, "SI", joints + names, motion.time),
@@ -106,7 +106,7 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
 
 
 def _holds(motion: Motion, limit: float) -> list[Check]:
-    """What holds that transmit more than a force at a point keep to: moment, angle on the object, friction."""
+    """Limits of grasps that transmit more than a force at a point: moment, angle on the object, friction."""
     checks, rotation = [], attitude(motion.object.pose[:, 3:])[0]
     for agent in motion.agents:
         grasp, own = agent.grasp, [agent.name]
@@ -126,14 +126,14 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
 
 def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Check]:
     """Eqs. 18 and 19: rest at both ends as asked, the object's pose where the task fixes it."""
-    ends, task, held = [0, -1], problem.task, motion.object
+    ends, task, lifted = [0, -1], problem.task, motion.object
     labels = [name for agent in motion.agents for name in agent.joint_names]
-    labels += [f"{held.name} {c}" for c in OBJECT_COORDINATES]
-    speed = np.hstack([*(agent.v[ends] for agent in motion.agents), held.pose_velocity[ends]])
-    acceleration = np.hstack([*(agent.a[ends] for agent in motion.agents), held.pose_acceleration[ends]])
+    labels += [f"{lifted.name} {c}" for c in OBJECT_COORDINATES]
+    speed = np.hstack([*(agent.v[ends] for agent in motion.agents), lifted.pose_velocity[ends]])
+    acceleration = np.hstack([*(agent.a[ends] for agent in motion.agents), lifted.pose_acceleration[ends]])
     still = AT_ENDS if spline.rest == "acceleration" else np.inf
     wanted = np.stack([task.start, task.end])
-    off = np.where(np.isnan(wanted), 0.0, np.abs(held.pose[ends] - wanted))
+    off = np.where(np.isnan(wanted), 0.0, np.abs(lifted.pose[ends] - wanted))
     time = motion.time[ends]
     return [
         _worst("speed at the ends", np.abs(speed), AT_ENDS, "SI", labels, time),
@@ -143,7 +143,7 @@ def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Ch
 
 
 def _objective(problem: Problem, motion: Motion, result: SolverResult) -> Check:
-    """The solver's objective against Pinocchio's torques: would show a wrong kernel."""
+    """The solver's objective against Pinocchio's torques: a wrong kernel would show here."""
     terms, weights = objective_terms(motion), objective_weights(problem)
     ours = sum(weights[name] * value for name, value in terms.items())
     error = abs(ours - result.objective) / max(1.0, abs(ours))

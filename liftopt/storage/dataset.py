@@ -106,36 +106,36 @@ def _variables(solution: Solution) -> dict[str, Variable]:
 
 
 def _of_object(solution: Solution) -> dict[str, Variable]:
-    held, name = solution.object, solution.object.name
+    lifted, name = solution.object, solution.object.name
     twist, pose = ("time", "twist"), ("time", "pose")
     body = f"of the {name}, world axes, at its centre of mass: linear then angular"
     second = "m/s^2, rad/s^2"
     return {
         f"{name}_position": Variable(
-            ("time", "xyz"), held.pose[:, :3], "m", f"centre of mass of the {name} in the world"
+            ("time", "xyz"), lifted.pose[:, :3], "m", f"centre of mass of the {name} in the world"
         ),
         f"{name}_quaternion": Variable(
-            ("time", "quat"), held.quaternion, "1", f"orientation of the {name} in the world"
+            ("time", "quat"), lifted.quaternion, "1", f"orientation of the {name} in the world"
         ),
-        f"{name}_velocity": Variable(twist, held.velocity, "m/s, rad/s", f"velocity {body}"),
-        f"{name}_acceleration": Variable(twist, held.acceleration, second, f"acceleration {body}"),
-        f"{name}_pose": Variable(pose, held.pose, "m, rad", f"six coordinates of the {name}, R = Rx Ry Rz"),
-        f"{name}_pose_velocity": Variable(pose, held.pose_velocity, "m/s, rad/s", "their first derivatives"),
-        f"{name}_pose_acceleration": Variable(pose, held.pose_acceleration, second, "their second derivatives"),
+        f"{name}_velocity": Variable(twist, lifted.velocity, "m/s, rad/s", f"velocity {body}"),
+        f"{name}_acceleration": Variable(twist, lifted.acceleration, second, f"acceleration {body}"),
+        f"{name}_pose": Variable(pose, lifted.pose, "m, rad", f"six coordinates of the {name}, R = Rx Ry Rz"),
+        f"{name}_pose_velocity": Variable(pose, lifted.pose_velocity, "m/s, rad/s", "their first derivatives"),
+        f"{name}_pose_acceleration": Variable(pose, lifted.pose_acceleration, second, "their second derivatives"),
     }
 
 
 def _of_grasps(solution: Solution) -> dict[str, Variable]:
-    held, dimensions = solution.object, ("time", "grasp", "xyz")
+    lifted, dimensions = solution.object, ("time", "grasp", "xyz")
     force, moment = (
         np.stack([getattr(agent, name) for agent in solution.agents], axis=1)
         for name in ("grasp_force", "grasp_moment")
     )
-    about = f"moment of each agent on the {held.name} about its grasp point, world axes; 0 for a point grasp"
+    about = f"moment of each agent on the {lifted.name} about its grasp point, world axes; 0 for a point grasp"
     return {
-        "grasp_force": Variable(dimensions, force, "N", f"force of each agent on the {held.name}, world axes"),
+        "grasp_force": Variable(dimensions, force, "N", f"force of each agent on the {lifted.name}, world axes"),
         "grasp_moment": Variable(dimensions, moment, "N m", about),
-        "grasp_position": Variable(dimensions, held.grasp_position, "m", f"grasp points on the {held.name}, world"),
+        "grasp_position": Variable(dimensions, lifted.grasp_position, "m", f"grasp points on the {lifted.name}, world"),
     }
 
 

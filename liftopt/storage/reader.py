@@ -57,16 +57,16 @@ def load_result(path: str | Path) -> Solution:
     built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario), object_of(scenario))
     urdfs = _urdfs(file, attributes, scenario)
     try:
-        agents, held = agents_of(scenario, urdfs), object_of(scenario, urdfs)
-        _check_models(file, built, (*agents, held))
-        return _solution(scenario, urdfs, agents, held, data, attributes)
+        agents, lifted = agents_of(scenario, urdfs), object_of(scenario, urdfs)
+        _check_models(file, built, (*agents, lifted))
+        return _solution(scenario, urdfs, agents, lifted, data, attributes)
     except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
         why = f"{type(error).__name__}: {error}"
         raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
 
 
 def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dict[str, str]:
-    """Return the models of a result, of which each was looked through; raises InputError."""
+    """Return the models of a result, each of them checked; raises InputError."""
     if SCENARIO_TEXT in attributes:
         urdfs = {
             name: str(attributes.get(f"{URDF_TEXT}{name}", "")) for name in (*scenario.agents, scenario.object.name)
@@ -94,7 +94,7 @@ def _solution(
     scenario: Scenario,
     urdfs: dict[str, str],
     agents: tuple[Agent, ...],
-    held: LiftedObject,
+    lifted: LiftedObject,
     data: dict[str, Array],
     attributes: dict[str, Any],
 ) -> Solution:
@@ -115,7 +115,7 @@ def _solution(
         outcome=record.outcome,
         time=time,
         agents=tuple(_agent(agent, data, forces[:, i], moments[:, i]) for i, agent in enumerate(agents)),
-        object=_object(held, data, forces.reshape(knots, -1), moments),
+        object=_object(lifted, data, forces.reshape(knots, -1), moments),
         urdfs=urdfs,
         objective=float(attributes["objective"]),
         objective_terms={name: float(attributes[f"objective_{name}"]) for name in record.objective_weights},
@@ -146,10 +146,10 @@ def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> A
     return replace(agent_trajectory(agent, q[:, moving], v[:, moving], a[:, moving], force, moment), tau=tau)
 
 
-def _object(held: LiftedObject, data: dict[str, Any], forces: Array, moments: Array) -> ObjectTrajectory:
+def _object(lifted: LiftedObject, data: dict[str, Any], forces: Array, moments: Array) -> ObjectTrajectory:
     kinds = ("", "_velocity", "_acceleration")
-    pose, rate, second = (_array(data, f"{held.name}_pose{kind}", (len(forces), 6)) for kind in kinds)
-    return object_trajectory(held, pose, rate, second, forces, moments)
+    pose, rate, second = (_array(data, f"{lifted.name}_pose{kind}", (len(forces), 6)) for kind in kinds)
+    return object_trajectory(lifted, pose, rate, second, forces, moments)
 
 
 def _array(data: dict[str, Any], name: str, shape: tuple[int, ...]) -> Array:

@@ -20,7 +20,7 @@ TERMS, SECONDS = ("acceleration", "force"), ("solve", "evaluation", "setup", "to
 
 @dataclass(frozen=True)
 class Record:
-    """What is neither trajectory nor scenario; see ``Solution``, whose words these are."""
+    """What is neither trajectory nor scenario; see ``Solution``, which has the same attributes."""
 
     outcome: str
     objective_weights: dict[str, float]

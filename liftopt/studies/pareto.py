@@ -1,11 +1,10 @@
 """The Pareto front of two efforts, a person's against a robot's: what the one gains where the other works more.
 
 Every point is an optimum of the scenario with other weights of the two efforts, their sum kept; whoever else lifts
-keeps the weight that the scenario gives. The search starts
-anew at both ends and in the middle of the range, follows each of these optima through all weights by warm solves, and
-then goes over the whole range in both directions as long as a neighbour's motion leads to something better. What the
-weights of acceleration and force add to the objective, and local optima, may leave a point that another one beats in
-both efforts: such points are dropped.
+keeps the weight that the scenario gives. The search starts anew at both ends and in the middle of the range. It follows
+each of these optima through all weights by warm solves. Then it goes over the whole range in both directions as long as
+a neighbour's motion leads to something better. Acceleration and force have weights of their own, and there are local
+optima: so another point may be better in both efforts. Such points are dropped.
 """
 
 from __future__ import annotations
@@ -82,7 +81,7 @@ def pareto_front(
     Args:
         scenario: whose.
         count: of ratios.
-        progress: hears one line at a time.
+        progress: called with one line at a time about what is going on.
         between: names of the two whose efforts are traded; None takes the first person and the first robot, or the
             second who lifts.
 
@@ -131,7 +130,7 @@ def _pair(scenario: Scenario, between: Sequence[str] | None) -> tuple[str, str]:
 
 
 class _Walk:
-    """The best plan so far for every ratio, and the ways between them."""
+    """The best lift so far for every ratio, and the ways between them."""
 
     def __init__(
         self,
@@ -147,7 +146,7 @@ class _Walk:
         self.candidates: list[Candidate | None] = [None] * len(logs)
 
     def best(self) -> list[Candidate | None]:
-        """Return the best plan found for each ratio."""
+        """Return the best lift found for each ratio."""
         last = len(self.logs) - 1
         for i in sorted({0, last // 2, last}):
             if (found := self._search(i)) is not None:

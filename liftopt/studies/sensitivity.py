@@ -96,7 +96,7 @@ def sensitivity(scenario: Scenario, progress: Progress | None = None) -> Sensiti
 
     Args:
         scenario: what to lift.
-        progress: hears one line at a time.
+        progress: called with one line at a time about what is going on.
 
     Raises:
         InputError: a value of the scenario cannot be used.
@@ -119,13 +119,13 @@ def study(
     parameters: Sequence[Parameter] | None = None,
     progress: Progress | None = None,
 ) -> SensitivityStudy:
-    """Return what a plan depends on.
+    """Return what a lift depends on.
 
     Args:
         candidate: solved, to a tolerance far below what a change does.
         cache: that it comes from.
         parameters: to look at; None: ``parameters_of`` its scenario.
-        progress: hears one line at a time.
+        progress: called with one line at a time about what is going on.
 
     Raises:
         SolverError: kernels cannot be had.
@@ -141,7 +141,7 @@ def bearers(study: SensitivityStudy) -> tuple[str, ...]:
 
 
 def figures(candidate: Candidate) -> dict[str, float]:
-    """Return ``SensitivityStudy.figures`` of a plan."""
+    """Return ``SensitivityStudy.figures`` of a lift."""
     problem, spline, x = candidate.problem, candidate.spline, candidate.result.x
     motion = motion_at(problem, spline, x, spline.phase)
     terms, weights = objective_terms(motion), objective_weights(problem)
@@ -167,7 +167,7 @@ class _Sides:
 
 
 class _Differences:
-    """Central differences around one plan."""
+    """Central differences around one lift."""
 
     def __init__(self, candidate: Candidate, cache: SolverCache) -> None:
         self.candidate, self.cache, self.replanner = candidate, cache, Replanner(cache=cache)
@@ -181,7 +181,7 @@ class _Differences:
         self.told = [*self.relative, *carried, *(f"used {name}" for name in self.busiest)]
 
     def study(self, parameters: Sequence[Parameter], progress: Progress) -> SensitivityStudy:
-        """Return what the plan depends on."""
+        """Return what the lift depends on."""
         found, left_out = [], []
         for parameter in parameters:
             progress(f"sensitivity to {parameter.name}")
@@ -209,7 +209,7 @@ class _Differences:
                 first, tried = first or sides, []
                 continue
             if tried:
-                doubt = self._doubt(*tried[-1], sides, parameter, tangent)
+                doubt = self._doubt(*tried[-1], sides, tangent)
                 if not doubt:
                     return self._found(parameter, value, tangent, *tried[-1], beyond=first)
                 first = first or doubt
@@ -246,7 +246,7 @@ class _Differences:
             found.append(figures(candidate))
         return _Sides(*found)
 
-    def _doubt(self, step: float, sides: _Sides, halves: _Sides, parameter: Parameter, tangent: Tangent) -> str:
+    def _doubt(self, step: float, sides: _Sides, halves: _Sides, tangent: Tangent) -> str:
         """Return why what a step does is not proportional to it, in words; empty if it is."""
         worst, excess = "", 1.0
         for name in self.told:

@@ -93,16 +93,16 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
         }
         joints[agent.name] = tuple(placements)
         bases[agent.name] = base_of(agent)
-    held = solution.object
-    pose = motion_between(knots, held.pose, held.pose_velocity, held.pose_acceleration, time)[0]
-    bodies[held.name] = _track([_object_placement(row) for row in pose])
-    zero[held.name] = np.eye(4)
+    lifted = solution.object
+    pose = motion_between(knots, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration, time)[0]
+    bodies[lifted.name] = _track([_object_placement(row) for row in pose])
+    zero[lifted.name] = np.eye(4)
     return Playback(time, bodies, forces, zero, joints, bases)
 
 
 def _check(solution: Solution) -> None:
-    name, held = solution.scenario.name, solution.object
-    shown = [solution.time, held.pose, held.pose_velocity, held.pose_acceleration]
+    name, lifted = solution.scenario.name, solution.object
+    shown = [solution.time, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration]
     shown += [values for agent in solution.agents for values in (agent.q, agent.v, agent.a, agent.grasp_force)]
     if not all(np.isfinite(values).all() for values in shown):
         raise InputError(name, NO_VALUE, "cannot be shown: the result holds numbers that are not finite")

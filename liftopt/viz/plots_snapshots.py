@@ -103,11 +103,11 @@ def _key(figure: Figure, axes: Axes, force: float, solution: Solution) -> None:
 def _bodies(lift: Lift) -> list[tuple[pin.Model, pin.GeometryModel, Array]]:
     """Return each model with its shapes and its q (K, nq); all are drawn in one picture."""
     solution = lift.dense
-    held = object_of(solution.scenario, solution.urdfs)
+    lifted = object_of(solution.scenario, solution.urdfs)
     poses = np.hstack([solution.object.pose[:, :3], solution.object.quaternion])
     models = [
         *((agent.model, agent.urdf) for agent in agents_of(solution.scenario, solution.urdfs)),
-        (held.model, held.urdf),
+        (lifted.model, lifted.urdf),
     ]
     motions = [*(agent.q for agent in solution.agents), poses]
     return [

@@ -108,9 +108,9 @@ def body_path(cast: Cast, body: str) -> str:
 
 def parts_of(cast: Cast) -> list[Part]:
     """Return everything that is drawn of the agents and the object, at zero."""
-    held = cast.solution.scenario.object
+    lifted = cast.solution.scenario.object
     parts = [part for agent in cast.solution.agents for part in _figure(cast, agent)]
-    size = (held.depth, held.width, held.height)
+    size = (lifted.depth, lifted.width, lifted.height)
     return [*parts, Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003))]
 
 

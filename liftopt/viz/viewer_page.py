@@ -1,7 +1,7 @@
 """The page that plays one lift, or two: one self-contained file with the meshcat viewer, the scene and the controls.
 
 The page that ``liftopt view`` serves and the file that ``--html`` writes are the same bytes. The viewer, with three.js
-in it, is meshcat's own file (``assets/meshcat``); nothing else of meshcat is needed.
+in it, is meshcat's own file (``meshcat_files``); nothing else of meshcat is needed.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 from liftopt.assessment.who import who_is
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
+from liftopt.viz.meshcat_files import LICENCES, VIEWER, meshcat_text
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_part import Colour
@@ -148,14 +149,13 @@ def _title(solution: Solution, other: Solution | None) -> str:
 
 def _fill(data: dict[str, Any], title: str) -> str:
     assets = files("liftopt.viz") / "assets"
-    viewer = assets / "meshcat"
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    licences = [(viewer / name).read_text(encoding="utf-8") for name in ("LICENSE", "main.min.js.LICENSE.txt")]
+    licences = [meshcat_text(name) for name in LICENCES if not name.endswith(".json")]
     pieces = {
         "@TITLE@": title.replace("&", "&amp;").replace("<", "&lt;"),
         "@STYLE@": (assets / "playback.css").read_text(encoding="utf-8"),
         "@LICENCES@": "\n".join(licences).replace("--", "- -").replace("</", "<\\/"),
-        "@VIEWER@": (viewer / "main.min.js").read_text(encoding="utf-8").replace("</script", "<\\/script"),
+        "@VIEWER@": meshcat_text(VIEWER).replace("</script", "<\\/script"),
         "@DATA@": text,
         "@CAMERA@": (assets / "camera.js").read_text(encoding="utf-8"),
         "@SCRIPT@": (assets / "playback.js").read_text(encoding="utf-8"),

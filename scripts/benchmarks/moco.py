@@ -99,19 +99,19 @@ def _run(lift: dict[str, Any], seconds: float) -> dict[str, Any]:
 
 def describe(case: Case) -> dict[str, Any]:
     """Return a lift and its start as plain numbers; SI, world axes or those of the body."""
-    problem, task, held = case.problem, case.problem.task, case.problem.team.object
+    problem, task, lifted = case.problem, case.problem.task, case.problem.team.object
     phase = np.linspace(0.0, 1.0, 2 * case.spline.intervals + 1)  # Moco's knots and the points midway
     motion = motion_at(problem, case.spline, case.start, phase)
-    grasps = [held.model.frames[held.model.getFrameId(name)].placement.translation for name in held.grasp_frames]
+    grasps = [lifted.model.frames[lifted.model.getFrameId(name)].placement.translation for name in lifted.grasp_frames]
     return {
         "intervals": case.spline.intervals,
         "duration": task.duration,
-        "gravity": held.model.gravity.linear.tolist(),
+        "gravity": lifted.model.gravity.linear.tolist(),
         "weights": objective_weights(problem),
         "agents": [_agent(*pair) for pair in zip(problem.team.agents, motion.agents, strict=True)],
         "object": {
-            "name": held.name,
-            "body": _body(held.model.inertias[1]),
+            "name": lifted.name,
+            "body": _body(lifted.model.inertias[1]),
             "grasps": [point.tolist() for point in grasps],
             "coordinates": _coordinates(case, motion),
         },

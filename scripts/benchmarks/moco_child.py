@@ -24,10 +24,10 @@ def lift_model(lift: dict[str, Any]) -> Any:
     """Return the model: every agent a chain of pin joints with torque actuators, held to the object at points."""
     model = osim.Model()
     model.setGravity(_vec3(lift["gravity"]))
-    held = _object(model, lift["object"])
+    lifted = _object(model, lift["object"])
     for agent, grasp in zip(lift["agents"], lift["object"]["grasps"], strict=True):
         hand = _chain(model, agent)
-        constraint = osim.PointConstraint(hand, _vec3(agent["grasp"]), held, _vec3(grasp))
+        constraint = osim.PointConstraint(hand, _vec3(agent["grasp"]), lifted, _vec3(grasp))
         constraint.setName(f"grasp_{agent['name']}")
         model.addConstraint(constraint)
     model.finalizeConnections()
@@ -161,20 +161,20 @@ def _chain(model: Any, agent: dict[str, Any]) -> Any:
     return bodies[agent["hand"]]
 
 
-def _object(model: Any, held: dict[str, Any]) -> Any:
+def _object(model: Any, lifted: dict[str, Any]) -> Any:
     """Add the object: three translations, then pitch and yaw about its own axes; no roll."""
-    body = _body(held["name"], held["body"])
+    body = _body(lifted["name"], lifted["body"])
     transform = osim.SpatialTransform()
     axes = {"pitch": transform.upd_rotation2(), "yaw": transform.upd_rotation3()}
     axes |= {"x": transform.upd_translation1(), "y": transform.upd_translation2(), "z": transform.upd_translation3()}
     for name, axis in axes.items():
         names = osim.ArrayStr()
-        names.append(f"{held['name']}_{name}")
+        names.append(f"{lifted['name']}_{name}")
         axis.setCoordinateNames(names)
         axis.set_function(osim.LinearFunction(1.0, 0.0))
     transform.upd_rotation1().set_function(osim.Constant(0.0))
     zero = osim.Vec3(0)
-    joint = osim.CustomJoint(f"{held['name']}_joint", model.getGround(), zero, zero, body, zero, zero, transform)
+    joint = osim.CustomJoint(f"{lifted['name']}_joint", model.getGround(), zero, zero, body, zero, zero, transform)
     model.addBody(body)
     model.addJoint(joint)
     return body

@@ -61,16 +61,16 @@ def on_our_models(case: Case, found: dict[str, Any]) -> OnOurModels:
         return moved, object_trajectory(problem.team.object, *(_columns(found[kind], names) for kind in RATES), forces)
 
     def off(force: Array) -> Array:
-        moved, held = move(force)
+        moved, lifted = move(force)
         torques = [agent.tau[:, agent.moving] - own for agent, own in zip(moved, wanted, strict=True)]
-        return np.hstack([*torques, held.wrench[:, served]])
+        return np.hstack([*torques, lifted.wrench[:, served]])
 
     force = _fitted(off, len(time), FORCE_SIZE * len(agents))
-    moved, held = move(force)
+    moved, lifted = move(force)
     left, joints = np.abs(off(force)), sum(own.shape[1] for own in wanted)
-    gaps = [np.linalg.norm(agent.grasp_position - held.grasp_position[:, i], axis=1) for i, agent in enumerate(moved)]
+    gaps = [np.linalg.norm(agent.grasp_position - lifted.grasp_position[:, i], axis=1) for i, agent in enumerate(moved)]
     return OnOurModels(
-        objective=_objective(case, time, moved, held),
+        objective=_objective(case, time, moved, lifted),
         closure=float(np.max(gaps)),
         torque=float(left[:, :joints].max()),
         balance=float(left[:, joints:].max()),
@@ -82,8 +82,8 @@ def as_answer(lift: dict[str, Any]) -> dict[str, Any]:
     """Return the motion of a described lift as Moco's answer would have it."""
     named = {joint["name"]: joint for agent in lift["agents"] for joint in agent["joints"]}
     torques = {name: joint["tau"] for name, joint in named.items()}
-    held = lift["object"]
-    named |= {f"{held['name']}_{coordinate['name']}": coordinate for coordinate in held["coordinates"]}
+    lifted = lift["object"]
+    named |= {f"{lifted['name']}_{coordinate['name']}": coordinate for coordinate in lifted["coordinates"]}
     answer: dict[str, Any] = {kind: {name: state[kind] for name, state in named.items()} for kind in RATES}
     time = np.linspace(0.0, lift["duration"], 2 * lift["intervals"] + 1).tolist()
     return answer | {"torques": torques, "time": time}
@@ -105,9 +105,9 @@ def _fitted(off: Any, times: int, size: int) -> Array:
     return np.array([np.linalg.lstsq(a, -b, rcond=None)[0] for a, b in zip(slopes, constant, strict=True)])
 
 
-def _objective(case: Case, time: Array, moved: list[AgentTrajectory], held: ObjectTrajectory) -> float:
+def _objective(case: Case, time: Array, moved: list[AgentTrajectory], lifted: ObjectTrajectory) -> float:
     weights = objective_weights(case.problem)
-    accelerations = [held.pose_acceleration, *(agent.a[:, agent.moving] for agent in moved)]
+    accelerations = [lifted.pose_acceleration, *(agent.a[:, agent.moving] for agent in moved)]
     integrand = weights["acceleration"] * sum(np.sum(a**2, axis=1) for a in accelerations)
     for agent in moved:
         integrand = integrand + weights[agent.name] * np.sum(agent.tau[:, agent.moving] ** 2, axis=1)

@@ -19,7 +19,7 @@ from benchmarks.case import TOLERANCE, Case, repeat
 from benchmarks.goals import Row
 from benchmarks.scenarios import table5
 from benchmarks.solves import counts, spent
-from liftopt.collocation.codegen import kernel_cache as libraries
+from liftopt.collocation.codegen import kernel_cache
 from liftopt.collocation.motion import motion_at
 
 BATCH = 50
@@ -118,14 +118,14 @@ def floor(case: Case, repeats: int) -> Row:
 def _no_compiler() -> Iterator[None]:
     """Let nothing be compiled, or found in the cache or the package."""
     kept = {name: os.environ.get(name) for name in ("CC", "LIFTOPT_CACHE")}
-    package = libraries.PACKAGE
+    package = kernel_cache.PACKAGE
     with tempfile.TemporaryDirectory() as folder:
         os.environ.update(CC="", LIFTOPT_CACHE=folder)
-        libraries.PACKAGE = Path(folder)
+        kernel_cache.PACKAGE = Path(folder)
         try:
             yield
         finally:
-            libraries.PACKAGE = package
+            kernel_cache.PACKAGE = package
             for name, value in kept.items():
                 if value is None:
                     del os.environ[name]

@@ -44,7 +44,9 @@ class SnoptRun:
         converged: by its own word.
         status: SNOPT's exit code and Drake's word for it.
         objective: at the last point it asked for.
-        seconds: wall time [s]; evaluation: of which in our functions; handing_over: of which in Python around them.
+        seconds: wall time [s].
+        evaluation: of which in our functions [s].
+        handing_over: of which in Python around them [s].
         cpu: time of this process [s].
         points: at which our functions were evaluated.
     """
@@ -114,7 +116,8 @@ class _Group:
 
     Attributes:
         rows, columns: of the Jacobian.
-        places: row and column within the group of every entry; entries: which of the Jacobian's it is.
+        places: row and column within the group of every entry.
+        entries: which entries of the Jacobian these are.
     """
 
     rows: Index

@@ -55,8 +55,8 @@ def _stages(case: Case, repeats: int) -> dict[str, float]:
     def fresh() -> Problem:
         return Problem(team, task_of(scenario), spline.mesh())
 
-    models, (agents, held) = repeat(repeats, lambda: (agents_of(scenario), object_of(scenario)))
-    kernels, team = repeat(repeats, Team.of, agents, held)
+    models, (agents, lifted) = repeat(repeats, lambda: (agents_of(scenario), object_of(scenario)))
+    kernels, team = repeat(repeats, Team.of, agents, lifted)
     programme, _ = repeat(repeats, lambda: fresh().nlp)
     rows, _ = repeat(repeats, lambda: fresh().constraints)
     starts, _ = measure(min(SLOW, repeats), posture_starts, case.problem, 3, 0, Deadline.after(SLOW * PATIENCE))

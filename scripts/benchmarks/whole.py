@@ -40,11 +40,11 @@ def in_process(name: str, starts: int, repeats: int) -> Row:
     timing, solution = repeat(repeats, solve, scenario, cache=cache)
     alone, _ = measure(1, solve, scenario)
     by_default = table5().scenario(*overrides)
-    scouted, _ = repeat(repeats, solve, by_default, cache=cache)
+    searched, _ = repeat(repeats, solve, by_default, cache=cache)
     note = (
         f"{name}, solver.tries=0; with nothing kept from the lift before: {1e3 * alone.median:.0f} ms; "
-        f"as by default, after scouts on a coarse mesh, in {by_default.solver.workers} threads: "
-        f"{1e3 * scouted.median:.0f} ms"
+        f"as by default, after a coarse search, in {by_default.solver.workers} threads: "
+        f"{1e3 * searched.median:.0f} ms"
     )
     details = timing.plain() | {f"{key}_ms": 1e3 * value for key, value in solution.seconds.items()}
     return Row(1e3 * timing.median, _doubt(solution) + note, _counts(solution), details)

@@ -27,7 +27,7 @@ for mass in (2.2, 2.4, 2.6):
         print(f"{mass:g} kg: no plan from there, solve anew")
         continue
     print(f"{mass:g} kg: {plan.result.iterations} iterations, {1e3 * took:.0f} ms, solved: {plan.solved}")
-    robot = plan.at(first.time).agents[1]
+    robot = next(agent for agent in plan.at(first.time).agents if agent.name == "robot")
     axes.plot(first.time, robot.grasp_force[:, 2], label=f"{mass:g} kg")
 axes.set(xlabel="time [s]", ylabel="the robot's force upwards [N]")
 axes.legend()

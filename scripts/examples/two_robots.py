@@ -17,7 +17,11 @@ team = lo.Scenario(
         "right": lo.Robot(model="sawyer", base={"x": 1.7, "y": -0.45}),
     },
     object=lo.Box(
-        name="board", mass=8.0, depth=0.6, width=0.8, height=0.04,
+        name="board",
+        mass=8.0,
+        depth=0.6,
+        width=0.8,
+        height=0.04,
         grasps={"left": (0.3, 0.3, -0.02), "right": (0.3, -0.3, -0.02)},
     ),
     task=lo.Lift(
@@ -25,7 +29,7 @@ team = lo.Scenario(
         start={"height": 0.9, "human_distance": 0.4},
         end={"height": 1.3, "human_distance": 0.4},
     ),
-)  # fmt: skip
+)
 solution = lo.solve(team)
 print(solution.status)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -230,7 +229,7 @@ def test_an_iterate_is_not_judged_and_its_suggested_changes_name_keys(light: Sol
     assert "task.standing_distance = 1.80" in change.message
 
 
-def test_a_mesh_that_was_refined_is_said(solved: Callable[..., Any], light: Solution) -> None:
+def test_a_mesh_that_was_refined_is_said(light: Solution) -> None:
     coarse = replace(light, scenario=light.scenario.replace({"solver.intervals": light.intervals // 2}))
     (finding,) = _of(assess(coarse), "mathematics.mesh")
     assert finding.title == f"mesh refined from N = {coarse.scenario.solver.intervals} to {light.intervals}"

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,18 +14,6 @@ from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 
 GRAVITY = 9.81
-
-
-@pytest.fixture(scope="module")
-def people(team_solution: Callable[[str], Any]) -> Solution:
-    solution: Solution = team_solution("two_people").solution
-    return solution
-
-
-@pytest.fixture(scope="module")
-def robots(team_solution: Callable[[str], Any]) -> Solution:
-    solution: Solution = team_solution("two_robots").solution
-    return solution
 
 
 def _verdicts(solution: Solution) -> dict[str | None, str]:

@@ -22,13 +22,7 @@ from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
-from liftopt.multibody.person.human import Subject, human_agent
-from liftopt.multibody.placement import facing
-from liftopt.multibody.robots.sawyer import sawyer_agent
-from liftopt.multibody.table import lifted_table
-from liftopt.search.initial_guess import InitialGuess, posture_starts
-
-TEN_DEGREES = np.radians(10.0)
+from liftopt.search.initial_guess import InitialGuess
 
 
 def chain(seed: int, joints: tuple[str, ...] = ("RX", "RY", "RZ", "PY")) -> pin.Model:
@@ -79,24 +73,6 @@ def turned(agent: Agent, angle: float, x: float) -> Agent:
         normal = moved.rotation @ workspace.normal
         workspace = HalfSpace(normal, workspace.offset + float(normal @ moved.translation))
     return replace(agent, model=model, workspace=workspace, name=f"{agent.name}_turned")
-
-
-def level_task(agents: int = 2, x: float = 0.625, **changes: object) -> LiftTask:
-    """Return a lift of a level object from a centre at 0.91 m to 1.41 m, as in Table 5."""
-    task = LiftTask(
-        duration=2.0,
-        start=np.array([x, np.nan, 0.91, 0.0, 0.0, 0.0]),
-        end=np.array([x, np.nan, 1.41, 0.0, 0.0, 0.0]),
-        pose_lower=np.array([-5.0, -5.0, 0.0, 0.0, -TEN_DEGREES, -TEN_DEGREES]),
-        pose_upper=np.array([5.0, 5.0, 3.0, 0.0, TEN_DEGREES, TEN_DEGREES]),
-        pose_velocity=np.full(6, 2.0),
-        agent_weights=(1.0, 0.7, 1.3)[:agents],
-        acceleration_weight=0.5,
-        force_weight=0.01,
-        max_grasp_force=200.0,
-        balance_tolerance=0.0,
-    )
-    return replace(task, **changes)  # type: ignore[arg-type]
 
 
 def newton_euler(model: pin.Model, frames: tuple[str, ...], y: np.ndarray, period: float) -> np.ndarray:
@@ -209,45 +185,9 @@ def make_turned() -> Callable[..., Agent]:
 
 
 @pytest.fixture(scope="session")
-def make_task() -> Callable[..., LiftTask]:
-    return level_task
-
-
-@pytest.fixture(scope="session")
-def human() -> Agent:
-    return human_agent(Subject(1.75, 75.0, "male"))
-
-
-@pytest.fixture(scope="session")
-def sawyer() -> Agent:
-    return sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
-
-
-@pytest.fixture(scope="session")
-def table() -> LiftedObject:
-    return lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02)
-
-
-@pytest.fixture(scope="session")
-def team(human: Agent, sawyer: Agent, table: LiftedObject) -> Team:
-    return Team.of((human, sawyer), table)
-
-
-@pytest.fixture(scope="session")
-def problem(team: Team) -> Problem:
+def problem(team: Team, make_task: Callable[..., LiftTask]) -> Problem:
     """Return the lift of Table 5 on 8 intervals."""
-    return Problem(team, level_task(), RestToRestSpline(8).mesh())
-
-
-@pytest.fixture(scope="session")
-def small_lift(team: Team) -> Problem:
-    """Return the lift of Table 5 on 10 intervals, which the tests solve."""
-    return Problem(team, level_task(agent_weights=(1.0, 1.0)), RestToRestSpline(10).mesh())
-
-
-@pytest.fixture(scope="session")
-def starts(small_lift: Problem) -> list[InitialGuess]:
-    return posture_starts(small_lift, 2, 0, NEVER)
+    return Problem(team, make_task(), RestToRestSpline(8).mesh())
 
 
 @pytest.fixture(scope="session")
@@ -263,11 +203,11 @@ def solved(ipopt: Ipopt, starts: list[InitialGuess]) -> SolverResult:
 @pytest.fixture(scope="session")
 def arm_team(make_arm: Callable[..., Agent]) -> Team:
     """Return two random arms that hold a box, on CasADi's virtual machine, which alone can differentiate itself."""
-    held = box(np.array([[-0.3, 0.02, -0.05], [0.25, 0.02, -0.05]]))
+    lifted = box(np.array([[-0.3, 0.02, -0.05], [0.25, 0.02, -0.05]]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CC", "")
         patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
-        return Team.of((make_arm(1), make_arm(2, "other")), held)
+        return Team.of((make_arm(1), make_arm(2, "other")), lifted)
 
 
 @pytest.fixture(scope="session")
@@ -280,12 +220,10 @@ def knot_functions(
     for name, agent in (("human", human), ("sawyer", sawyer), ("arm", arm)):
         topology = Topology.of(agent.reduced(), (agent.grasp_frame,))
         built[name] = (topology.model, topology, agent_functions(topology))
-    for name, held in (("table", table), ("box", box(np.array([[-0.3, 0.1, 0.0], [0.2, 0.1, -0.1], [0, -0.2, 0.1]])))):
-        topology = Topology.of(held.model, held.grasp_frames)
+    for name, lifted in (
+        ("table", table),
+        ("box", box(np.array([[-0.3, 0.1, 0.0], [0.2, 0.1, -0.1], [0, -0.2, 0.1]]))),
+    ):
+        topology = Topology.of(lifted.model, lifted.grasp_frames)
         built[name] = (topology.model, topology, object_functions(topology))
     return built
-
-
-@pytest.fixture
-def rng() -> np.random.Generator:
-    return np.random.default_rng(7)

@@ -99,15 +99,15 @@ class Plain:
 
     def grasp(self, i: int) -> np.ndarray:
         """Return the object's grasp point (K, 3) of an agent."""
-        held = self.problem.team.object
-        lever = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
+        lifted = self.problem.team.object
+        lever = lifted.model.frames[lifted.model.getFrameId(lifted.grasp_frames[i])].placement.translation
         return np.array([self.q[k, -6:-3] + self.attitude(k) @ lever for k in range(len(self.phase))])
 
     def balance(self, newton_euler: Outputs) -> np.ndarray:
         """Return force and moment (K, 6) of Newton and Euler less the grasps'."""
-        held = self.problem.team.object
+        lifted = self.problem.team.object
         y = np.hstack([*(part[:, -6:] for part in (self.q, self.v, self.a)), self.force.reshape(len(self.q), -1)])
-        return np.array([newton_euler(held.model, held.grasp_frames, row, 1.0)[:6] for row in y])
+        return np.array([newton_euler(lifted.model, lifted.grasp_frames, row, 1.0)[:6] for row in y])
 
 
 @pytest.fixture

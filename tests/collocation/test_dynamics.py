@@ -172,8 +172,8 @@ def test_one_function_serves_every_table(
 ) -> None:
     """Newton-Euler of another table, another period too."""
     _, topology, functions = knot_functions["table"]
-    held = lifted_table(mass=9.0, depth=1.2, width=0.6, height=0.05)
-    other = Topology.of(held.model, held.grasp_frames)
+    lifted = lifted_table(mass=9.0, depth=1.2, width=0.6, height=0.05)
+    other = Topology.of(lifted.model, lifted.grasp_frames)
     assert other.signature() == topology.signature()
     y = sample(functions, rng)
     expected = newton_euler(other.model, other.frames, y, 0.9)
@@ -258,11 +258,11 @@ def test_object_functions_take_any_number_of_grasps(
 ) -> None:
     """Newton-Euler with one and with four grasps."""
     for grasps in (1, 4):
-        held = make_box(rng.normal(size=(grasps, 3)))
-        topology = Topology.of(held.model, held.grasp_frames)
+        lifted = make_box(rng.normal(size=(grasps, 3)))
+        topology = Topology.of(lifted.model, lifted.grasp_frames)
         functions = object_functions(topology)
         y = sample(functions, rng)
         assert len(y) == 18 + 3 * grasps
-        expected = newton_euler(held.model, held.grasp_frames, y, PERIOD)
+        expected = newton_euler(lifted.model, lifted.grasp_frames, y, PERIOD)
         actual = dense(functions.value(y, np.r_[PERIOD, topology.parameters])).ravel()
         np.testing.assert_allclose(actual, expected, rtol=0, atol=1e-12 * np.abs(expected).max())

@@ -86,8 +86,8 @@ def test_three_agents_on_one_object(
     check_derivatives: Callable[[Problem], None],
 ) -> None:
     """A third grasp on the object, held by a random arm: sizes and derivatives."""
-    held = make_box(np.vstack([EDGES, [[0.0, 0.15, -0.01]]]))
-    team = Team.of((human, sawyer, make_arm(4)), held)
+    lifted = make_box(np.vstack([EDGES, [[0.0, 0.15, -0.01]]]))
+    team = Team.of((human, sawyer, make_arm(4)), lifted)
     problem = Problem(team, make_task(3), RestToRestSpline(6).mesh())
     assert problem.layout.n_x == 7 * (10 + 7 + 4 + 6) + 7 * 9
     assert sum(block.name == "closure" for block in problem.constraints.blocks) == 3
@@ -118,9 +118,9 @@ def test_grasps_along_another_axis_leave_out_its_moment(
 
 def test_grasps_on_a_skew_line_are_refused(make_box: Callable[..., LiftedObject]) -> None:
     """Statics: the moment about that line cannot be served, and no single row of the balance stands for it."""
-    held = make_box(np.array([[-0.3, 0.1, 0.0], [0.3, -0.1, 0.0]]))
+    lifted = make_box(np.array([[-0.3, 0.1, 0.0], [0.3, -0.1, 0.0]]))
     with pytest.raises(ModelError, match="axes"):
-        held.unserved_row()
+        lifted.unserved_row()
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

@@ -45,10 +45,10 @@ def test_agent_knot_jacobian_by_finite_differences(
 def test_object_knot_jacobian_by_finite_differences(
     make_box: Callable[..., LiftedObject], table: LiftedObject, rng: np.random.Generator
 ) -> None:
-    for held in (table, make_box(rng.normal(size=(3, 3)))):
-        y = rng.normal(size=18 + 3 * len(held.grasp_frames))
-        jacobian = kkt._object_slopes(held, y[None], 1.7)[0]
-        numeric = differences(lambda at, held=held: kkt._object_outputs(held, at[None], 1.7)[0], y)
+    for lifted in (table, make_box(rng.normal(size=(3, 3)))):
+        y = rng.normal(size=18 + 3 * len(lifted.grasp_frames))
+        jacobian = kkt._object_slopes(lifted, y[None], 1.7)[0]
+        numeric = differences(lambda at, lifted=lifted: kkt._object_outputs(lifted, at[None], 1.7)[0], y)
         np.testing.assert_allclose(jacobian, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
 
@@ -138,8 +138,8 @@ def test_nan_is_a_violation(small_lift: Problem, solved: SolverResult) -> None:
 
 def test_another_subjects_point_is_not_optimal(small_lift: Problem, solved: SolverResult) -> None:
     """The models are those of the problem: one kilogram more leaves its weight unbalanced at rest."""
-    held = small_lift.team.object
-    model = held.model.copy()
+    lifted = small_lift.team.object
+    model = lifted.model.copy()
     model.inertias[1] = type(model.inertias[1])(3.0, model.inertias[1].lever, model.inertias[1].inertia)
-    other = replace(small_lift, team=replace(small_lift.team, object=replace(held, model=model)))
+    other = replace(small_lift, team=replace(small_lift.team, object=replace(lifted, model=model)))
     assert kkt_error(other, solved.x, solved.multipliers).violation >= 9.81 - 1e-6

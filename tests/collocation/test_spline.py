@@ -130,7 +130,7 @@ def test_motion_stays_in_the_hull_of_its_control_points(space: RestToRestSpline,
     assert free.min() - 1e-12 <= motion.min() and motion.max() <= free.max() + 1e-12
 
 
-def test_mesh_states_the_space(rng: np.random.Generator) -> None:
+def test_mesh_states_the_space() -> None:
     space = RestToRestSpline(9)
     mesh = space.mesh()
     for order, values in enumerate(mesh.basis):

@@ -69,11 +69,11 @@ def test_agent_outputs_are_pinocchios(
 def test_object_outputs_are_newton_eulers_less_the_moments(
     make_box: Callable[..., LiftedObject], newton_euler: Outputs, rng: np.random.Generator
 ) -> None:
-    held = make_box(POINTS)
-    topology = WrenchTopology.holding(held.model, held.grasp_frames)
+    lifted = make_box(POINTS)
+    topology = WrenchTopology.holding(lifted.model, lifted.grasp_frames)
     y = rng.normal(size=30)
     c = wrench_object_functions(topology).value(y, np.r_[PERIOD, topology.parameters]).full().ravel()
-    expected = newton_euler(held.model, held.grasp_frames, np.r_[y[:18], y[18:21], y[24:27]], PERIOD)
+    expected = newton_euler(lifted.model, lifted.grasp_frames, np.r_[y[:18], y[18:21], y[24:27]], PERIOD)
     expected[3:6] -= attitude(y[3:6]).T @ (y[21:24] + y[27:30])
     np.testing.assert_allclose(c, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 

@@ -26,11 +26,11 @@ def test_energy_is_conserved_but_for_an_error_of_fourth_order_in_the_quadrature(
 
 
 def test_the_object_gains_its_weight_times_the_height_it_is_lifted(solution):
-    *agents, held, together = energy_books(solution, 2)
+    *agents, lifted, together = energy_books(solution, 2)
     table = solution.scenario.object.mass * 9.81 * (solution.object.pose[-1, 2] - solution.object.pose[0, 2])
-    assert held.change[-1] == pytest.approx(table, rel=1e-12)
+    assert lifted.change[-1] == pytest.approx(table, rel=1e-12)
     assert table == pytest.approx(2.0 * 9.81 * 0.5, rel=1e-9)
-    assert together.change[-1] == pytest.approx(sum(books.change[-1] for books in (*agents, held)), rel=1e-12)
+    assert together.change[-1] == pytest.approx(sum(books.change[-1] for books in (*agents, lifted)), rel=1e-12)
 
 
 def test_what_the_transcription_leaves_shrinks_with_the_mesh(solution, solved):

@@ -41,8 +41,8 @@ def still(solved: Callable[..., Any]) -> MeshStudy:
 
 
 def test_equations_are_those_of_pinocchio_in_double_precision(models):
-    agents, held, task = models
-    written, rng = instant(agents, held, task), np.random.default_rng(4)
+    agents, lifted, task = models
+    written, rng = instant(agents, lifted, task), np.random.default_rng(4)
     at = written.coordinates
     assert (at.n_q, at.n_joints, list(at.unlocked)) == (22, 17, [0, 1, 2, 4, 5])
     q, v, a = rng.uniform(-1.0, 1.0, (3, STATES, at.n_q))
@@ -50,7 +50,7 @@ def test_equations_are_those_of_pinocchio_in_double_precision(models):
     pose, rate, second = np.zeros((3, STATES, 6))
     for six, part in ((pose, q), (rate, v), (second, a)):
         six[:, at.unlocked] = part[:, at.n_joints :]
-    table = object_trajectory(held, pose, rate, second, force)
+    table = object_trajectory(lifted, pose, rate, second, force)
     tau, first = np.zeros((STATES, at.n_joints)), 0
     for i, agent in enumerate(agents):
         own = slice(first, first + at.joints[i])
@@ -106,8 +106,8 @@ def test_ramps_of_acceleration_take_both_optima_to_the_same_limit_from_above(sti
 
 
 def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models, solution):
-    agents, held, task = models
-    transcription = HermiteSimpson(agents, held, task, 6)
+    agents, lifted, task = models
+    transcription = HermiteSimpson(agents, lifted, task, 6)
     found = transcription.solve(points_of(resample(solution, 3), transcription.at).every(5))
     assert found.converged
     assert found.violation < 1e-6

@@ -133,6 +133,7 @@ def test_crosscheck_imports_nothing_of_the_solve() -> None:
         "liftopt.crosscheck",
         "liftopt.multibody",
         "liftopt.errors",
+        "liftopt.types",
     )
     for path in set((PACKAGE / "crosscheck").glob("*.py")) - {PACKAGE / "crosscheck" / "transcriptions.py"}:
         for name in _imports(path):

@@ -21,9 +21,9 @@ def lift(request: pytest.FixtureRequest, team_solution: Callable[[str], Any]) ->
 
 def test_mujoco_finds_everybodys_torques(lift: Solution) -> None:
     pytest.importorskip("mujoco")
-    *agents, held = inverse_dynamics(lift)
+    *agents, lifted = inverse_dynamics(lift)
     assert [found.name for found in agents] == [agent.name for agent in lift.agents]
-    for found in (*agents, held):
+    for found in (*agents, lifted):
         assert found.relative < 1e-6, (found.name, found.worst)
         assert found.gap < 1e-9
 

@@ -143,7 +143,7 @@ def box_lift() -> Path:
 def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, raised: float = 0.0) -> RecordedLift:
     """Return a record of the predicted motion: late by a share of the lift, values scaled, angles raised."""
     dense = resample(solution, 10)
-    human, held = dense.agents[0], dense.object
+    human, lifted = dense.agents[0], dense.object
     duration = float(dense.time[-1])
     time = np.arange(round((duration + 2 * STANDING) * 200) + 1) / 200
 
@@ -178,8 +178,8 @@ def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, rais
         markers=(),
         residual=np.zeros((len(time), 0)),
         elbow_flexion=-over(human.q[:, [9]])[:, 0],
-        object_position=over(held.pose[:, :3]),
-        object_quaternion=over(held.quaternion),
+        object_position=over(lifted.pose[:, :3]),
+        object_quaternion=over(lifted.quaternion),
         carried=(STANDING, STANDING + duration),
         gaps=(),
         notes=(),

@@ -23,18 +23,6 @@ from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.solution import Solution
 
 
-@pytest.fixture(scope="module")
-def people(team_solution: Callable[[str], Any]) -> Solution:
-    solution: Solution = team_solution("two_people").solution
-    return solution
-
-
-@pytest.fixture(scope="module")
-def robots(team_solution: Callable[[str], Any]) -> Solution:
-    solution: Solution = team_solution("two_robots").solution
-    return solution
-
-
 def test_the_only_one_needs_no_name(people: Solution, robots: Solution) -> None:
     assert the_person(robots, None).name == "human"
     assert the_robot(robots, "far").name == "far"

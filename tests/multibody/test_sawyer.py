@@ -91,7 +91,7 @@ def test_urdf_kinematics_equal_textbook_dh_matrices(given, textbook_end, frame_p
         np.testing.assert_allclose(frame_pose(model, "robot_grasp", q), expected, rtol=0.0, atol=1e-12)
 
 
-def test_chain_and_urdf_weigh_the_same(frame_pose):
+def test_chain_and_urdf_weigh_the_same():
     """Oracle: the lumped tool of the DH chain against the URDF's own tool link, by mass, moment and second moment."""
     agent = sawyer_agent(**GRIPPER)
     chain = sawyer_chain(base_height=0.915, tool_length=0.15, tool_mass=0.4)

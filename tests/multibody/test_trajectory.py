@@ -122,7 +122,7 @@ def test_ground_reaction_is_whole_body_newton_euler(agent: Agent, rng: np.random
         np.testing.assert_allclose(found.ground_moment[k], moment, atol=1e-5)
 
 
-def test_ground_carries_the_weight_of_a_person_who_stands(rng: np.random.Generator) -> None:
+def test_ground_carries_the_weight_of_a_person_who_stands() -> None:
     """Closed form: at rest the ground bears body weight less what the grasp carries."""
     agent = AGENTS["human"]()
     q, zero = np.tile(agent.posture, (2, 1)), np.zeros((2, 10))
@@ -131,15 +131,15 @@ def test_ground_carries_the_weight_of_a_person_who_stands(rng: np.random.Generat
 
 
 @pytest.fixture(scope="module")
-def held() -> LiftedObject:
+def lifted() -> LiftedObject:
     return lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02)
 
 
-def test_object_rates_are_those_of_its_pose(held: LiftedObject) -> None:
+def test_object_rates_are_those_of_its_pose(lifted: LiftedObject) -> None:
     """Finite differences of position and of the quaternion, world axes."""
     motion, times, h = smooth(6, 3), np.linspace(0.0, 2.0, 7), 1e-5
     forces = np.zeros((7, 6))
-    found, ahead, behind = (object_trajectory(held, *motion(times + step), forces) for step in (0.0, h, -h))
+    found, ahead, behind = (object_trajectory(lifted, *motion(times + step), forces) for step in (0.0, h, -h))
 
     def attitude(quaternion: np.ndarray) -> np.ndarray:
         return np.asarray(pin.Quaternion(quaternion).toRotationMatrix())
@@ -153,10 +153,10 @@ def test_object_rates_are_those_of_its_pose(held: LiftedObject) -> None:
     np.testing.assert_allclose(np.linalg.norm(found.quaternion, axis=1), 1.0, atol=1e-14)
 
 
-def test_object_attitude_is_rx_ry_rz(held: LiftedObject, rng: np.random.Generator) -> None:
+def test_object_attitude_is_rx_ry_rz(lifted: LiftedObject, rng: np.random.Generator) -> None:
     """Closed form: Table 4's order, and grasp points that turn with it."""
     x = rng.normal(size=(3, 6))
-    found = object_trajectory(held, x, np.zeros((3, 6)), np.zeros((3, 6)), np.zeros((3, 6)))
+    found = object_trajectory(lifted, x, np.zeros((3, 6)), np.zeros((3, 6)), np.zeros((3, 6)))
     for k in range(3):
         turn = [pin.exp3(axis * angle) for axis, angle in zip(np.eye(3), x[k, 3:], strict=True)]
         rotation = turn[0] @ turn[1] @ turn[2]
@@ -165,10 +165,10 @@ def test_object_attitude_is_rx_ry_rz(held: LiftedObject, rng: np.random.Generato
             np.testing.assert_allclose(found.grasp_position[k, i], x[k, :3] + rotation @ lever, atol=1e-14)
 
 
-def test_wrench_is_newton_euler_less_the_grasps(held: LiftedObject, rng: np.random.Generator) -> None:
+def test_wrench_is_newton_euler_less_the_grasps(lifted: LiftedObject, rng: np.random.Generator) -> None:
     """Closed form: m (a - g) - sum f along world axes, I alpha + w x I w - sum r x f about body axes."""
     motion, times, forces = smooth(6, 4), np.linspace(0.0, 2.0, 5), 10.0 * rng.normal(size=(5, 6))
-    found, body = object_trajectory(held, *motion(times), forces), held.model.inertias[1]
+    found, body = object_trajectory(lifted, *motion(times), forces), lifted.model.inertias[1]
     for k in range(5):
         rotation = pin.Quaternion(found.quaternion[k]).toRotationMatrix()
         omega, alpha = rotation.T @ found.velocity[k, 3:], rotation.T @ found.acceleration[k, 3:]
@@ -180,9 +180,9 @@ def test_wrench_is_newton_euler_less_the_grasps(held: LiftedObject, rng: np.rand
         np.testing.assert_allclose(found.wrench[k], np.concatenate([force, moment]), atol=1e-11)
 
 
-def test_free_flyer_state_is_the_derivative_on_pinocchios_manifold(held: LiftedObject) -> None:
+def test_free_flyer_state_is_the_derivative_on_pinocchios_manifold(lifted: LiftedObject) -> None:
     """Pinocchio's difference of two configurations over the time between them, and of two velocities."""
-    motion, h, model = smooth(6, 5), 1e-5, held.model
+    motion, h, model = smooth(6, 5), 1e-5, lifted.model
     for t in (0.0, 0.7, 1.9):
         (q, v, a), (ahead, fast, _), (behind, slow, _) = (
             free_flyer_state(*motion(np.array(at))) for at in (t, t + h, t - h)

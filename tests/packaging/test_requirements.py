@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import ast
 import json
+import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from liftopt.viz.meshcat_files import LICENCES, MESHCAT, VIEWER
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -78,6 +84,47 @@ def test_the_build_has_all_that_compiling_the_kernels_imports(tmp_path: Path, mo
     assert distributions(needed) - BUILD.keys() == set()
 
 
+def configure_the_viewer(tmp_path: Path, path: Path) -> tuple[int, str, Path]:
+    """Configure the part of the build that brings the viewer; what Python finds on ``path`` goes before all else."""
+    cmake = shutil.which("cmake")
+    if cmake is None:
+        pytest.skip("no CMake; pip has its own while it builds")
+    build = tmp_path / "build"
+    command = [cmake, "-S", str(ROOT / "liftopt/viz"), "-B", str(build), f"-DPython_EXECUTABLE={sys.executable}"]
+    environment = os.environ | {"PYTHONPATH": str(path)}
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    return run.returncode, run.stderr, build / "meshcat"
+
+
+def test_the_build_brings_the_viewer_from_meshcat(tmp_path: Path) -> None:
+    meshcat = tmp_path / "meshcat"
+    (meshcat / "viewer" / "dist").mkdir(parents=True)
+    (meshcat / "__init__.py").touch()
+    (meshcat / "viewer" / "LICENSE").touch()
+    for name in (VIEWER, *LICENCES[1:]):
+        (meshcat / "viewer" / "dist" / name).write_text(name)
+    status, told, made = configure_the_viewer(tmp_path, tmp_path)
+    assert status == 0, told
+    assert {file.name for file in made.iterdir()} == {VIEWER, *LICENCES}
+    assert (made / VIEWER).read_text() == VIEWER
+
+
+def test_the_build_ends_where_meshcat_is_missing(tmp_path: Path) -> None:
+    """A wheel without the viewer would show so only when somebody asks for a page."""
+    (tmp_path / "meshcat.py").touch()
+    status, told, made = configure_the_viewer(tmp_path, tmp_path)
+    assert status != 0
+    assert VIEWER in told and "CMake Error" in told and "meshcat" in told
+    assert not made.exists()
+
+
+def test_only_the_build_asks_for_meshcat() -> None:
+    """In the version that a source tree is told to install; as a dependency it would bring 20 packages."""
+    assert f"meshcat{BUILD['meshcat']}" == MESHCAT
+    assert [names for names in (PLAIN, *EXTRAS.values()) if "meshcat" in names] == []
+    assert not (ROOT / "liftopt/viz/assets/meshcat").exists()
+
+
 def test_a_package_has_the_same_bounds_wherever_it_is_asked_for() -> None:
     for name, entries in {"the build": BUILD, **EXTRAS}.items():
         for package in entries.keys() & PLAIN.keys():
@@ -104,6 +151,19 @@ def test_only_laboratory_and_crosscheck_import_what_a_plain_install_has_not() ->
     for file in (ROOT / "liftopt").rglob("*.py"):
         if file.relative_to(ROOT / "liftopt").parts[0] not in ("lab", "crosscheck"):
             assert distributions(imported(file)) - PLAIN.keys() == set(), file
+
+
+def test_the_locked_versions_are_within_the_bounds() -> None:
+    """What contributors and the tests ask for stands there, and nothing but names and versions does."""
+    lines = (ROOT / "requirements/lock.txt").read_text(encoding="utf-8").splitlines()
+    pins = [line.split("==") for line in lines if not line.startswith("#")]
+    assert [pin for pin in pins if not (len(pin) == 2 and re.fullmatch(r"[\w.+]+", pin[1]))] == []
+    locked = {canonicalize_name(name): version for name, version in pins}
+    project = PROJECT["project"]
+    extras = project["optional-dependencies"]
+    for requirement in map(Requirement, [*project["dependencies"], *extras["test"], *extras["docs"]]):
+        if requirement.marker is None:
+            assert locked[canonicalize_name(requirement.name)] in requirement.specifier, requirement
 
 
 def test_the_installation_page_tells_what_every_package_is_for() -> None:

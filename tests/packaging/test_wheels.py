@@ -15,12 +15,17 @@ import os
 import re
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from liftopt.viz.meshcat_files import LICENCES
+
+# The viewer's file of meshcat 0.3.2, as that wheel's own record has it.
+VIEWER = "sha256=3Qe5X7aVfPbBjufPOQm26yghSZUUJCgXGmDXbDNYIR8"
 LIFTOPT, OWN = "liftopt-*.whl", "liftopt_pinocchio_casadi-*.whl"
 RNEA = """
 import casadi, numpy, pinocchio
@@ -108,6 +113,22 @@ def test_the_wheels_say_on_which_systems_they_run(wheels: Path) -> None:
     for pattern in (LIFTOPT, OWN):
         (wheel,) = wheels.glob(pattern)
         assert re.search(rf"-{python}-{python}-manylinux_2_\d+_\w+\.whl$", wheel.name)
+
+
+def test_the_viewer_and_its_licences_are_inside(wheels: Path) -> None:
+    (wheel,) = wheels.glob(LIFTOPT)
+    with zipfile.ZipFile(wheel) as file:
+        kind, _, digest = VIEWER.partition("=")
+        content = file.read("liftopt/viz/assets/meshcat/main.min.js")
+        assert base64.urlsafe_b64encode(hashlib.new(kind, content).digest()).decode().rstrip("=") == digest
+        (metadata,) = (name for name in file.namelist() if name.endswith(".dist-info/METADATA"))
+        folder = metadata.replace("METADATA", "licenses/")
+        names = [name for name in file.namelist() if not name.endswith("/")]
+        licences = {name.removeprefix(folder) for name in names if name.startswith(folder)}
+        expression = re.search(r"^License-Expression: (.*)$", file.read(metadata).decode(), re.MULTILINE)
+    assert expression is not None
+    assert set(expression[1].split(" AND ")) == {"BSD-3-Clause", "MIT", "Apache-2.0"}
+    assert licences == {"LICENSE", *(f"meshcat/{name}" for name in LICENCES)}
 
 
 def test_it_solves_as_this_environment_does(

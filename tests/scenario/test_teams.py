@@ -40,9 +40,9 @@ def test_two_people_face_each_other_and_hold_opposite_edges(two_people: Scenario
         ("anna", "person", "anna_grasp"),
         ("ben", "person", "ben_grasp"),
     ]
-    held = object_of(two_people)
-    assert (held.name, held.grasp_frames) == ("box", ("grasp_anna", "grasp_ben"))
-    points = [held.model.frames[held.model.getFrameId(name)].placement.translation for name in held.grasp_frames]
+    lifted = object_of(two_people)
+    assert (lifted.name, lifted.grasp_frames) == ("box", ("grasp_anna", "grasp_ben"))
+    points = [lifted.model.frames[lifted.model.getFrameId(name)].placement.translation for name in lifted.grasp_frames]
     np.testing.assert_allclose(points, [[-0.25, 0.0, -0.15], [0.25, 0.0, -0.15]])
     # Feet 1.4 m apart, each towards the other: the foot frame's z axis is the way ahead (the paper's frame).
     for agent, x, ahead in ((anna, 0.0, 1.0), (ben, 1.4, -1.0)):
@@ -85,10 +85,10 @@ def test_a_person_and_two_sawyers_stand_and_hold_where_the_file_says(trio: Scena
         np.testing.assert_allclose(base, facing, atol=1e-12)
         one = pose(agent, f"{agent.name}_Q1").translation[2]
         assert one - height == pytest.approx(pose(left, "left_Q1").translation[2] - 0.915, abs=1e-9)
-    held = object_of(trio)
-    points = [held.model.frames[held.model.getFrameId(name)].placement.translation for name in held.grasp_frames]
+    lifted = object_of(trio)
+    points = [lifted.model.frames[lifted.model.getFrameId(name)].placement.translation for name in lifted.grasp_frames]
     np.testing.assert_allclose(points, [[-0.225, 0.0, -0.025], [0.225, 0.2, -0.025], [0.225, -0.2, -0.025]])
-    assert held.unserved_row() is None
+    assert lifted.unserved_row() is None
     task = task_of(trio)
     np.testing.assert_allclose(task.start, [0.625, 0.0, 0.9, 0.0, 0.0, 0.0])
     np.testing.assert_allclose(task.end, [0.625, np.nan, 1.2, 0.0, 0.0, 0.0])

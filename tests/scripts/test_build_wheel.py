@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import zipfile
 from importlib.metadata import PathDistribution
 from pathlib import Path
 from types import ModuleType
@@ -51,3 +52,16 @@ def test_a_file_that_is_not_this_folders_is_refused(script: ModuleType, tmp_path
     content = (ROOT / NAME).read_bytes() + b"\n"
     with pytest.raises(SystemExit, match=f"{NAME} is not the file of this folder"):
         list(script._files(installed(tmp_path, content, script._digest(content))))
+
+
+@pytest.mark.parametrize(
+    ("inside", "missing"), [("viz/assets/meshcat/main.min.js", "kernels"), ("kernels/a.so", "main.min.js")]
+)
+def test_a_wheel_without_kernels_or_viewer_is_refused(
+    script: ModuleType, tmp_path: Path, inside: str, missing: str
+) -> None:
+    wheel = tmp_path / "liftopt-0.1.0-cp311-cp311-linux_x86_64.whl"
+    with zipfile.ZipFile(wheel, "w") as file:
+        file.writestr(f"liftopt/{inside}", b"")
+    with pytest.raises(SystemExit, match=f"has no .*{missing}"):
+        script._repaired(wheel, tmp_path)

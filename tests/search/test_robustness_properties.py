@@ -56,16 +56,16 @@ def pattern(solved: Callable[..., Any]) -> Solution:
 def _moved(pattern: Solution, scenario: Scenario, seed: int) -> Solution:
     """Return a motion of a scenario that is random and solves nothing."""
     rng, knots = np.random.default_rng(seed), len(pattern.time)
-    agents, held = agents_of(scenario), object_of(scenario)
+    agents, lifted = agents_of(scenario), object_of(scenario)
     forces = rng.normal(size=(knots, len(agents), 3)) * 50.0
     moves = [rng.normal(size=(3, knots, len(agent.moving_joints))) for agent in agents]
-    texts = {agent.name: agent.urdf for agent in agents} | {held.name: held.urdf}
+    texts = {agent.name: agent.urdf for agent in agents} | {lifted.name: lifted.urdf}
     return dataclasses.replace(
         pattern,
         scenario=scenario,
         time=np.linspace(0.0, scenario.duration, knots),
         agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
-        object=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
+        object=object_trajectory(lifted, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
         urdfs=texts,
     )
 

@@ -47,9 +47,9 @@ def test_best_of_the_starts_is_kept_and_all_are_told(solved: Callable[..., Any])
 
 
 def _numbers(solution: Solution) -> list[np.ndarray]:
-    held = solution.object
+    lifted = solution.object
     arrays = [x for agent in solution.agents for x in (agent.q, agent.v, agent.a, agent.tau, agent.grasp_force)]
-    return [*arrays, held.pose, held.pose_velocity, held.pose_acceleration, np.array(solution.objective)]
+    return [*arrays, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration, np.array(solution.objective)]
 
 
 def test_same_scenario_gives_the_same_answer_bit_by_bit() -> None:

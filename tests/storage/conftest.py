@@ -33,14 +33,14 @@ def folder(kept: Any, tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def rewritten() -> Callable[..., None]:
-    """Return a function that changes a folder's solution.nc and seals it again, as somebody who knows how would."""
+    """Return a function that changes a folder's solution.nc and its checksum, as somebody who knows how would."""
 
-    def rewrite(folder: Path, change: Change, seal: bool = True) -> None:
+    def rewrite(folder: Path, change: Change, checksum: bool = True) -> None:
         path = folder / "solution.nc"
         path.write_bytes(path.read_bytes()[:-DIGEST_BYTES])
         with h5py.File(path, "r+") as file:
             change(file)
-        if seal:
+        if checksum:
             path.write_bytes(with_checksum(path.read_bytes()))
 
     return rewrite

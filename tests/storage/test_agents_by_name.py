@@ -43,7 +43,7 @@ TEAMS: dict[str, tuple[dict[str, Any], dict[str, Any], list[str]]] = {
 }
 
 
-def scenario_of(agents: dict[str, Any], held: dict[str, Any]) -> Scenario:
+def scenario_of(agents: dict[str, Any], lifted: dict[str, Any]) -> Scenario:
     """Return Table 5's lift of a crate by others."""
     place = {"human_distance": 0.4, "height": 0.9}
     return scenario_from_dict(
@@ -51,7 +51,7 @@ def scenario_of(agents: dict[str, Any], held: dict[str, Any]) -> Scenario:
             "schema": 2,
             "duration": 2.0,
             "agents": agents,
-            "object": {"name": "crate", "mass": 4.0, "depth": 0.45, "width": 0.4, "height": 0.1, **held},
+            "object": {"name": "crate", "mass": 4.0, "depth": 0.45, "width": 0.4, "height": 0.1, **lifted},
             "task": {"standing_distance": 1.9, "start": place, "end": {**place, "height": 1.3}},
         }
     )
@@ -61,7 +61,7 @@ def scenario_of(agents: dict[str, Any], held: dict[str, Any]) -> Scenario:
 def written(request: pytest.FixtureRequest, kept: Any) -> Solution:
     """A motion of one team, whose other figures are borrowed."""
     scenario, rng = scenario_of(*TEAMS[request.param][:2]), np.random.default_rng(1)
-    agents, held, knots = agents_of(scenario), object_of(scenario), len(kept.solution.time)
+    agents, lifted, knots = agents_of(scenario), object_of(scenario), len(kept.solution.time)
     forces = rng.normal(size=(knots, len(agents), 3)) * 50.0
     moves = [rng.normal(size=(3, knots, len(agent.moving_joints))) for agent in agents]
     names = [*scenario.agents, "acceleration", "force"]
@@ -69,8 +69,8 @@ def written(request: pytest.FixtureRequest, kept: Any) -> Solution:
         kept.solution,
         scenario=scenario,
         agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
-        object=object_trajectory(held, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
-        urdfs={agent.name: agent.urdf for agent in agents} | {held.name: held.urdf},
+        object=object_trajectory(lifted, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
+        urdfs={agent.name: agent.urdf for agent in agents} | {lifted.name: lifted.urdf},
         objective_terms={name: float(k) for k, name in enumerate(names)},
         objective_weights=dict.fromkeys(names, 0.5),
         assessment=Assessment.of(

@@ -245,7 +245,7 @@ def test_a_hostile_netcdf_is_refused(
 ) -> None:
     folder = Path(shutil.copytree(result, tmp_path / "result"))
     os.mkfifo(folder / "pipe")
-    rewritten(folder, HOSTILE_NETCDF[case], seal=case != "a filter")
+    rewritten(folder, HOSTILE_NETCDF[case], checksum=case != "a filter")
     assert refused(_view(folder)).startswith(f"liftopt: error: {folder / 'solution.nc'}: ")
 
 
@@ -284,7 +284,7 @@ def test_a_result_runs_no_module_that_stands_beside_it(
 ) -> None:
     """Whoever unpacks a stranger's result may stand in its folder; what another program wrote is read apart."""
     folder = Path(shutil.copytree(result, tmp_path / "result"))
-    rewritten(folder, lambda file: file.attrs.__setitem__("record", "{}"), seal=False)
+    rewritten(folder, lambda file: file.attrs.__setitem__("record", "{}"), checksum=False)
     for name in ("numpy", "h5py", "json", "liftopt", "sitecustomize"):
         (folder / f"{name}.py").write_text("open('ran', 'w')")
     path = [p for p in sys.path if p]
@@ -304,7 +304,7 @@ def test_a_read_that_hangs_is_ended(
     from liftopt.storage.reader import load_result
 
     folder = Path(shutil.copytree(result, tmp_path / "result"))
-    rewritten(folder, lambda file: None, seal=False)
+    rewritten(folder, lambda file: None, checksum=False)
     monkeypatch.setattr(netcdf_file, "PATIENCE", 0.2)
     monkeypatch.setattr(netcdf_file, "READ", "import time; time.sleep(60)")
     with pytest.raises(InputError, match=r"it is damaged: reading it takes more than 0.2 s"):

@@ -1,4 +1,4 @@
-"""Models made to harm, within a solution.nc that is sealed anew: one line on stderr; nothing is written or run."""
+"""Models made to harm, in a solution.nc with a checksum that fits: one line on stderr; nothing is written or run."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def front(scenario: Scenario) -> Front:
     return pareto_front(scenario, 5)
 
 
-def test_every_point_is_a_verified_optimum_of_its_weights(front: Front, scenario: Scenario) -> None:
+def test_every_point_is_a_verified_optimum_of_its_weights(front: Front) -> None:
     """Efforts and the weighted objective by Pinocchio's torques, as the verification has them."""
     assert front.missing == ()
     for point in front.points + front.dominated:

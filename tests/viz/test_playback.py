@@ -54,9 +54,9 @@ def test_bodies_are_where_pinocchio_puts_the_splines_joints(solution: Any, playb
 
 
 def test_the_table_follows_its_own_spline(solution: Any, playback: Playback) -> None:
-    held, track = solution.object, playback.bodies[solution.object.name]
+    lifted, track = solution.object, playback.bodies[solution.object.name]
     for k in range(0, len(playback.time), 7):
-        pose = _between(solution.time, held.pose, held.pose_velocity, held.pose_acceleration, playback.time[k])
+        pose = _between(solution.time, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration, playback.time[k])
         roll, pitch, yaw = (pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", pose[3:], strict=True))
         np.testing.assert_allclose(track.position[k], pose[:3], atol=1e-9)
         np.testing.assert_allclose(

@@ -59,8 +59,9 @@ def folder(solved: Callable[..., Any]) -> Path:
 @contextmanager
 def _viewing(folder: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     command = [sys.executable, "-u", "-c", RUN, str(folder), "--no-browser", *options]
+    # Away from this folder: what is installed has the viewer, a source tree has not.
     process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
     try:
         assert process.stdout is not None
@@ -93,7 +94,7 @@ def test_it_serves_the_very_page_and_nothing_outlives_it(
 
 def test_an_interrupt_while_it_loads_is_not_lost(folder: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-c", SWALLOW + RUN, str(folder), "--html", str(tmp_path / "page.html")]
-    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE)
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert (run.returncode, run.stdout, run.stderr) == (130, "", "liftopt: error: interrupted\n")
     assert not (tmp_path / "page.html").exists()
 

@@ -67,7 +67,7 @@ class Banded:
     def __init__(
         self, problem: Problem, options: BandedOptions | None = None, progress: Progress | None = None
     ) -> None:
-        """Build the solver; ``progress`` hears of it when kernels must be compiled first.
+        """Build the solver; ``progress`` is called when kernels must be compiled first.
 
         Raises:
             SolverError: the extension is not installed, or the problem does not have the form it takes.
@@ -111,7 +111,7 @@ class Banded:
         more: dict[str, Any] = {"max_iterations": most}
         if incumbent is not None:
             fewer = min(most, self._most_with(incumbent))
-            more = {"rival": incumbent.objective if incumbent.converged else np.inf, "max_iterations": fewer}
+            more = {"incumbent": incumbent.objective if incumbent.converged else np.inf, "max_iterations": fewer}
         cold = COLD | {"mu": self._mu_share * COLD["mu"]} | more
         arguments = cold
         if warm is not None:

@@ -12,7 +12,7 @@ class Deadline:
     """Until when work may go on, by the clock that never goes back (``time.monotonic``).
 
     Attributes:
-        at: when it passes [s]; never, if nothing is said.
+        at: when it passes [s]; by default never.
         began: when the time that it limits began [s].
     """
 
@@ -36,7 +36,7 @@ class Deadline:
         return self.at - time.monotonic()
 
     def share(self, share: float) -> Deadline:
-        """Return the deadline after a share of the time; that of no limit is none."""
+        """Return the deadline after a share of the time; without a limit it never passes."""
         return self if self.at == math.inf else Deadline(self.began + share * (self.at - self.began), self.began)
 
 

@@ -19,7 +19,7 @@ def parallel_map(solvers: Sequence[Solver], jobs: Sequence[Callable[[Solver], T]
 
     Args:
         solvers: one for each thread, at least one; with several they must let go of Python's lock at work.
-        jobs: what to do with a solver, whichever it is. Those that one solver does are done when they are asked for.
+        jobs: what to do with a solver, whichever it is. With one solver each is done when its result is asked for.
     """
     if min(len(solvers), len(jobs)) < 2:
         yield from (job(solvers[0]) for job in jobs)

@@ -12,7 +12,7 @@ from liftopt.types import Array
 # Every solver's word for having reached its deadline.
 STOPPED = "User_Requested_Stop"
 # Of a solver that was given an incumbent: no failure, but not worth going on.
-PRUNED = "Worse_Than_Rival"
+PRUNED = "Worse_Than_Incumbent"
 
 
 @dataclass(frozen=True)

@@ -55,10 +55,10 @@ def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recor
         raise InputError("--lift", NO_VALUE, shows)
     if lift.carried is None or lift.object_position is None or lift.carried[0] >= lift.carried[1]:
         raise InputError(lift.source, NO_VALUE, "shows no object that is carried: start and end are not known")
-    hand, held = lift.over_lift(lift.hand_position, 2), lift.over_lift(lift.object_position, 2)
+    hand, lifted = lift.over_lift(lift.hand_position, 2), lift.over_lift(lift.object_position, 2)
     place = hand - lift.over_lift(_base_travel(lift), 2)
     # The hand, mirrored through the object's centre, seen from above: between the two carriers lies this.
-    depth = 2.0 * float(np.linalg.norm((held - hand)[:, :2], axis=1).mean())
+    depth = 2.0 * float(np.linalg.norm((lifted - hand)[:, :2], axis=1).mean())
     start, end = ({"height": _round(z), "human_distance": _round(x)} for x, _, z in place)
     person = lift.subject
     return scenario_from_dict(

@@ -102,7 +102,7 @@ def dry_run(
         goal_time: how long after the motion's end the server goes on [s].
         trials: how many.
         seed: of what differs between them.
-        progress: hears one line a trial.
+        progress: called with one line for each trial.
         robot: its name; None where there is only one.
 
     Raises:

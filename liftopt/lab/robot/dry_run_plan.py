@@ -94,7 +94,7 @@ def _ends_repeated(rows: Array) -> Array:
 
 def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Array, Array]:
     """Return a robot's torques (7,), force and moment on its gripper (3,) that hold the object still where it is."""
-    held = object_of(dense.scenario, dense.urdfs)
+    lifted = object_of(dense.scenario, dense.urdfs)
     arms = dense.object.grasp_position[k] - dense.object.pose[k, :3]
     columns: list[Array] = []
     loads: list[Array] = []
@@ -108,7 +108,7 @@ def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Ar
             columns.append(np.eye(6)[:, 3:])
             loads.append(agent.grasp_moment[k])
     grasp_map, load = np.hstack(columns), np.concatenate(loads)
-    weight = np.append(-held.model.inertias[1].mass * held.model.gravity.linear, np.zeros(3))
+    weight = np.append(-lifted.model.inertias[1].mass * lifted.model.gravity.linear, np.zeros(3))
     load = load + np.linalg.pinv(grasp_map) @ (weight - grasp_map @ load)
     own = load[first : first + 6] if robot.grasp.moments else np.append(load[first : first + 3], np.zeros(3))
     q, none = robot.q[[k]][:, robot.moving], np.zeros((1, int(robot.moving.sum())))

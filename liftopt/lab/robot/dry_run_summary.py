@@ -26,10 +26,12 @@ class JointSummary:
 
     Attributes:
         name: of the joint.
-        error_max: off the plan, the most [rad]; error_rms: over the time of the motion [rad].
+        error_max: off the plan, the most [rad].
+        error_rms: off the plan, root mean square over the time of the motion [rad].
         error_at_end: off when the motion's time is over, the worst trial [rad].
         error_final: off when the server is done [rad].
-        torque_max: that the joint passed on [Nm]; planned_torque_max: of the solution.
+        torque_max: that the joint passed on [Nm].
+        planned_torque_max: of the solution [Nm].
         limit: of its torque [Nm].
     """
 

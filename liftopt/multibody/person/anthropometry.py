@@ -23,8 +23,7 @@ class Regression:
         return self.constant + self.per_stature * subject.stature + self.per_mass * subject.mass
 
 
-# Ordinary least squares on every row of the data set; its column names. Source: ANSUR_II.
-DIMENSIONS_SOURCE: Source = ANSUR_II
+# Ordinary least squares on every row of ANSUR_II (``sources``); its column names.
 DIMENSIONS: dict[Sex, dict[str, Regression]] = {
     "male": {
         "waistheightomphalion": Regression(-0.20437, 0.74477, -0.000551),

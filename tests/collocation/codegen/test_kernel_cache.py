@@ -42,7 +42,7 @@ def put(folder: Path, content: str, key: str = KEY) -> Path:
 
 
 def content(path: Path) -> str:
-    """Open a library: what it holds but for its seal."""
+    """Open a library: what it holds but for its checksum."""
     return path.read_bytes()[:-DIGEST_BYTES].decode()
 
 

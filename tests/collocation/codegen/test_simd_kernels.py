@@ -49,7 +49,7 @@ def aligned(size: int) -> np.ndarray:
 
 
 def call(address: int, arguments: list[np.ndarray], sizes: list[int], lanes: int) -> list[np.ndarray]:
-    """Call a wide function on arguments (lanes, n) and return results (lanes, n)."""
+    """Call a SIMD function on arguments (lanes, n) and return results (lanes, n)."""
     flat = [aligned(a.size) for a in arguments]
     for room, argument in zip(flat, arguments, strict=True):
         room[:] = argument.T.ravel()

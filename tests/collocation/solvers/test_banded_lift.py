@@ -126,7 +126,7 @@ def test_any_team_without_a_compiler(arm_team: Team, make_task: Callable[..., Li
 
 
 def test_derivatives_agree_with_casadis(small_lift: Problem, starts: list[InitialGuess]) -> None:
-    """As many iterations by the wide kernels and by CasADi's functions through Python, where both take Newton's matrix.
+    """As many iterations by the SIMD kernels and by CasADi's functions through Python, where both take Newton's matrix.
 
     That is near an optimum: elsewhere the one leaves out curvature, which the other cannot tell from the rest.
     """
@@ -243,9 +243,7 @@ def test_objective_and_rows_agree_with_casadis(
         assert banded.objective(starts[0].x, problem) == found
 
 
-def test_kernels_need_no_assembled_problem(
-    team: Team, make_task: Callable[..., LiftTask], starts: list[InitialGuess]
-) -> None:
+def test_kernels_need_no_assembled_problem(team: Team, make_task: Callable[..., LiftTask]) -> None:
     """Neither the solver nor a solution touches the functions that CasADi would assemble."""
     problem = Problem(team, make_task(agent_weights=(1.0, 1.0)), RestToRestSpline(12).mesh())
     Banded(problem, BandedOptions(max_iterations=1)).solve(naive_guess(problem).x, deadline=NEVER)

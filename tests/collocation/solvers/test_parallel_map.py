@@ -1,4 +1,4 @@
-"""Jobs abreast: what they return, in which order, on which solver, and what is dropped."""
+"""Jobs in parallel: what they return, in which order, on which solver, and what is dropped."""
 
 from __future__ import annotations
 

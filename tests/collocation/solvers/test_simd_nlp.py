@@ -1,4 +1,4 @@
-"""The NLP on wide kernels: the one CasADi assembles from one-knot kernels is the oracle."""
+"""The NLP on SIMD kernels: the one CasADi assembles from one-knot kernels is the oracle."""
 
 from __future__ import annotations
 

@@ -37,10 +37,10 @@ def test_bodies_are_where_pinocchio_puts_the_joints(team: Any, playback: Playbac
 
 
 def test_hands_hold_the_object_where_the_scenario_says(team: Any, playback: Playback) -> None:
-    held = playback.bodies[team.solution.object.name]
+    lifted = playback.bodies[team.solution.object.name]
     for i, agent in enumerate(team.agents):
-        at_start = team.solution.object.grasp_position[0, i] - held.position[0]
-        moved = held.position + at_start  # it stays level
+        at_start = team.solution.object.grasp_position[0, i] - lifted.position[0]
+        moved = lifted.position + at_start  # it stays level
         assert np.linalg.norm(playback.forces[agent.name].point - moved, axis=1).max() < CLOSURE
 
 

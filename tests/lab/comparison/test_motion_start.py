@@ -123,10 +123,10 @@ def test_of_several_goals_the_lifts_own_counts(plan: Plan) -> None:
     assert lift_start(still, *plan)[0] == 4.001  # a trajectory and its goal, of which the arm did nothing
 
 
-def test_the_readme_names_the_topics_to_record() -> None:
+def test_the_page_on_robots_names_the_topics_to_record() -> None:
     """Its command must catch what a comparison looks for, in a bag that is begun before the exported one is played."""
-    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    assert f"rosbag record -O trial_1 /robot/joint_states {GOAL_TOPIC}\nrosbag play robot/trajectory.bag" in readme
+    page = (Path(__file__).parents[3] / "docs" / "howto" / "robot.md").read_text(encoding="utf-8")
+    assert f"rosbag record -O trial_1 /robot/joint_states {GOAL_TOPIC}\nrosbag play robot/trajectory.bag" in page
 
 
 def bag(path: Path, plan: Plan, sent: float, late: float, **heard: Any) -> Path:

@@ -11,9 +11,10 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
+from liftopt.lab.mocap.from_markers import Load, recorded_lift
 from liftopt.lab.mocap.hand_force import HandForce
 from liftopt.lab.mocap.recorded_file import load_recorded, save_recorded
-from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, recorded_lift
+from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recording import TO_Z_UP, ForcePlate, Recording, in_metres
 from liftopt.multibody.urdf import load_model
 

@@ -192,7 +192,7 @@ def test_an_end_that_moves_is_refused(trajectory):
         check_motion(replace(trajectory, velocity=velocity))
 
 
-def test_a_pose_is_read_as_tools_print_it(trajectory):
+def test_a_pose_is_read_as_tools_print_it():
     expected = [-0.1, 2e-5, 0.3, 0.4, 0.5, 0.6, -7.0]
     for text in ("[-0.1, 2e-5, 0.3, 0.4, 0.5, 0.6, -7.0]", "-0.1 2e-5 .3 .4 .5 .6 -7", "-0.1,2e-5,.3,.4,.5,.6,-7"):
         np.testing.assert_array_equal(read_pose(text), expected)

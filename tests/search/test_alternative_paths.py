@@ -26,7 +26,7 @@ def solver(small_lift: Problem) -> PostureSolver:
 def _gaps(problem: Problem, x: np.ndarray) -> np.ndarray:
     """Return the distance between each agent's grasp and its point on the object at every knot, (K, agents) [m]."""
     control, _ = problem.unpack(x)
-    coordinates, held = problem.mesh.basis[0] @ control, problem.team.object
+    coordinates, lifted = problem.mesh.basis[0] @ control, problem.team.object
     gaps = np.zeros((len(coordinates), len(problem.team.agents)))
     for k, row in enumerate(coordinates):
         turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", row[-3:], strict=True)]
@@ -36,7 +36,7 @@ def _gaps(problem: Problem, x: np.ndarray) -> np.ndarray:
             data = model.createData()
             pin.framesForwardKinematics(model, data, row[problem.layout.columns(i)])
             hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
-            edge = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
+            edge = lifted.model.frames[lifted.model.getFrameId(lifted.grasp_frames[i])].placement.translation
             gaps[k, i] = np.linalg.norm(hand - placement.act(edge))
     return gaps
 

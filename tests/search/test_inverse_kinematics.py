@@ -28,10 +28,10 @@ def hands_and_points(problem: Problem, coordinates: np.ndarray) -> list[tuple[np
     x, pairs = coordinates[-6:], []
     turn = [pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", x[3:], strict=True)]
     for i, agent in enumerate(problem.team.agents):
-        model, held = agent.reduced(), problem.team.object
+        model, lifted = agent.reduced(), problem.team.object
         data = model.createData()
         pin.framesForwardKinematics(model, data, coordinates[problem.layout.columns(i)])
-        lever = held.model.frames[held.model.getFrameId(held.grasp_frames[i])].placement.translation
+        lever = lifted.model.frames[lifted.model.getFrameId(lifted.grasp_frames[i])].placement.translation
         hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation.copy()
         pairs.append((hand, x[:3] + turn[0] @ turn[1] @ turn[2] @ lever))
     return pairs

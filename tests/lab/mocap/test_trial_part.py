@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
+from liftopt.lab.mocap.from_markers import Load, recorded_lift
 from liftopt.lab.mocap.object_motion import lifts
 from liftopt.lab.mocap.recorded_file import load_recorded, save_recorded
-from liftopt.lab.mocap.recorded_lift import Load, RecordedLift, recorded_lift
+from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 from liftopt.lab.mocap.recording import ForcePlate, Recording
 from liftopt.lab.mocap.trial_part import TrialPart, chosen_part, ignored_markers

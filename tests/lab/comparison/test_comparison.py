@@ -115,7 +115,7 @@ def test_anatomical_signs(as_recorded: Made, solution: Solution) -> None:
     assert elbow.trials.min() > 0.0
 
 
-def test_force_sensors(as_recorded: Made, solution: Solution) -> None:
+def test_force_sensors(solution: Solution) -> None:
     """Sensors that show 0.8 of the predicted force: the prediction is 25 % higher; irregular samples at about 0.1 s."""
     dense = resample(solution, 10)
     time = np.sort(np.append(np.random.default_rng(1).uniform(0.0, 2.0, 30), [0.0, 2.0]))

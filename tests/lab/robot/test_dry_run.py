@@ -149,14 +149,14 @@ def test_before_the_goal_the_arm_carries_the_solutions_load_at_rest(runs):
 def test_at_rest_before_and_after_the_object_is_in_balance(result, solved):
     """Oracles: the sums of forces and of moments by hand, Pinocchio's gravity torques, the motion itself at rest."""
     solution = result.solution
-    plan, held = Plan.of(solution), solution.object
-    assert np.abs(held.acceleration[[0, -1], :3]).max() > 1.0  # or motion and rest were the same
+    plan, lifted = Plan.of(solution), solution.object
+    assert np.abs(lifted.acceleration[[0, -1], :3]).max() > 1.0  # or motion and rest were the same
     _, robot = agents_of(solution.scenario, solution.urdfs)
     moving, data, frame = solution.agents[1].moving, robot.model.createData(), robot.model.getFrameId("robot_grasp")
     for row, k in ((0, 0), (-1, -1)):
         on_object = -plan.force[row]
         others = np.array([0.0, 0.0, 2.0 * 9.81]) - on_object  # the person's, so that nothing accelerates
-        arms = held.grasp_position[k] - held.pose[k, :3]
+        arms = lifted.grasp_position[k] - lifted.pose[k, :3]
         np.testing.assert_allclose(np.cross(arms[0], others) + np.cross(arms[1], on_object), 0.0, atol=1e-6)
         q = solution.agents[1].q[k]
         pull = pin.computeFrameJacobian(robot.model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3].T @ plan.force[row]
