@@ -77,9 +77,10 @@ def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
 def _scenario(scenario: Scenario) -> list[str]:
     box = scenario.object
     start, end = edge_heights(scenario)
+    lift = "lift" if len(scenario.agents) > 1 else "lifts"
     return _wrapped(
-        f"{listed(_described(scenario))} lift {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) from "
-        f"{start:g} to {end:g} m (height of the edges they hold) in {scenario.duration:g} s{_apart(scenario)}"
+        f"{listed(_described(scenario))} {lift} {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) "
+        f"from {start:g} to {end:g} m (height of the edges they hold) in {scenario.duration:g} s{_apart(scenario)}"
     )
 
 

@@ -21,7 +21,7 @@ class InverseDynamics:
         ours, theirs: (K, n) torques with the grasp reaction applied, locked joints included [Nm, N]; for the object the
             wrench its motion needs less what the grasps give, force along world axes, moment about body axes.
         scale: (n,) what an error is relative to: the largest torque of the joint, the object's weight and its weight
-            at half the span of the grasps.
+            at half the span of the grasps; of a single grasp, at its distance from the centre of mass.
         gap: largest distance of the agent's grasp point from where the solution has it [m]; 0 for the object.
     """
 
@@ -77,7 +77,9 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
         scale = np.maximum(np.abs(agent.tau).max(axis=0), np.finfo(float).tiny)
         results.append(InverseDynamics(agent.name, agent.joint_names, agent.tau, found[:, dofs], scale, float(gap)))
     weight = float(model.body_mass[top] * 9.81)
-    span = np.linalg.norm(np.ptp(lifted.grasp_position[0], axis=0)) / 2
+    points = lifted.grasp_position[0]
+    apart = np.ptp(points, axis=0) / 2 if len(points) > 1 else points - lifted.pose[0, :3]
+    span = np.linalg.norm(apart)
     first = int(model.joint(f"{lifted.name}_free").dofadr[0])
     labels = tuple(f"{kind} {axis}" for kind in ("force", "moment") for axis in "xyz")
     scale = weight * np.array([1.0, 1.0, 1.0, span, span, span])
