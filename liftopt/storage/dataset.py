@@ -1,18 +1,14 @@
-"""A solution as named arrays with labels and units: what solution.nc holds, and what xarray shows of it.
-
-It is described once. The writer stores it as it is, and xarray, whose import takes as long as a solve, comes in
-only where somebody asks for it.
-"""
+"""A solution as a dataset of xarray, with labels and units: what solution.nc holds."""
 
 from __future__ import annotations
 
 import json
 import platform
-from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.solution.solution import Solution
@@ -20,39 +16,11 @@ from liftopt.storage.record import record
 from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
 from liftopt.types import Array
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 LIBRARIES = ("casadi", "pin", "numpy", "scipy", "h5netcdf")
 
 
-class Variable(NamedTuple):
-    """Numbers along named dimensions."""
-
-    dimensions: tuple[str, ...]
-    values: Array
-    units: str
-    long_name: str
-
-
-@dataclass(frozen=True)
-class NamedArrays:
-    """What solution.nc holds.
-
-    Attributes:
-        labels: dimension -> names along it; ``time`` has numbers instead, the variable of that name.
-        variables: by name.
-        attributes: numbers and text by name.
-    """
-
-    labels: dict[str, tuple[str, ...]]
-    variables: dict[str, Variable]
-    attributes: dict[str, Any]
-
-
-def named_arrays(solution: Solution) -> NamedArrays:
-    """Return all there is to keep of a solution: reading it gives an equal one."""
-    return NamedArrays(_labels(solution), _variables(solution), _attributes(solution))
+# Dimensions, values and attributes, as xarray takes them.
+Variable = tuple[tuple[str, ...], Array, dict[str, str]]
 
 
 def to_xarray(solution: Solution) -> xr.Dataset:
@@ -61,23 +29,15 @@ def to_xarray(solution: Solution) -> xr.Dataset:
     Dimensions: ``time``, ``<agent>_joint``, ``xyz``, ``quat`` (x y z w), ``twist`` (linear then angular), ``grasp``,
     ``pose``.
     """
-    import xarray as xr
-
-    arrays = named_arrays(solution)
     names = {
-        name: ((name,), np.array(labels, dtype=object), label_attributes(name))
-        for name, labels in arrays.labels.items()
+        name: ((name,), np.array(labels, dtype=object), {"units": "1", "long_name": f"names along {name}"})
+        for name, labels in _labels(solution).items()
     }
-    numbers = {
-        name: (each.dimensions, each.values, {"units": each.units, "long_name": each.long_name})
-        for name, each in arrays.variables.items()
-    }
-    return xr.Dataset(numbers, coords=names, attrs=arrays.attributes)
+    return xr.Dataset(_variables(solution), coords=names, attrs=_attributes(solution))
 
 
-def label_attributes(dimension: str) -> dict[str, str]:
-    """Return the attributes of the names along a dimension."""
-    return {"units": "1", "long_name": f"names along {dimension}"}
+def _variable(dimensions: tuple[str, ...], values: Array, units: str, long_name: str) -> Variable:
+    return dimensions, values, {"units": units, "long_name": long_name}
 
 
 def _labels(solution: Solution) -> dict[str, tuple[str, ...]]:
@@ -92,7 +52,7 @@ def _labels(solution: Solution) -> dict[str, tuple[str, ...]]:
 
 
 def _variables(solution: Solution) -> dict[str, Variable]:
-    variables = {"time": Variable(("time",), solution.time, "s", "time of the knots")}
+    variables = {"time": _variable(("time",), solution.time, "s", "time of the knots")}
     for agent in solution.agents:
         dimensions = ("time", f"{agent.name}_joint")
         for kind, values, unit, meaning in (
@@ -101,7 +61,7 @@ def _variables(solution: Solution) -> dict[str, Variable]:
             ("a", agent.a, "rad/s^2", "joint acceleration (m/s^2 for the prismatic GT joints)"),
             ("tau", agent.tau, "N m", "joint torque (force in N for the prismatic GT joints)"),
         ):
-            variables[f"{agent.name}_{kind}"] = Variable(dimensions, values, unit, f"{agent.name} {meaning}")
+            variables[f"{agent.name}_{kind}"] = _variable(dimensions, values, unit, f"{agent.name} {meaning}")
     return variables | _of_object(solution) | _of_grasps(solution) | _of_ground(solution)
 
 
@@ -111,17 +71,17 @@ def _of_object(solution: Solution) -> dict[str, Variable]:
     body = f"of the {name}, world axes, at its centre of mass: linear then angular"
     second = "m/s^2, rad/s^2"
     return {
-        f"{name}_position": Variable(
+        f"{name}_position": _variable(
             ("time", "xyz"), lifted.pose[:, :3], "m", f"centre of mass of the {name} in the world"
         ),
-        f"{name}_quaternion": Variable(
+        f"{name}_quaternion": _variable(
             ("time", "quat"), lifted.quaternion, "1", f"orientation of the {name} in the world"
         ),
-        f"{name}_velocity": Variable(twist, lifted.velocity, "m/s, rad/s", f"velocity {body}"),
-        f"{name}_acceleration": Variable(twist, lifted.acceleration, second, f"acceleration {body}"),
-        f"{name}_pose": Variable(pose, lifted.pose, "m, rad", f"six coordinates of the {name}, R = Rx Ry Rz"),
-        f"{name}_pose_velocity": Variable(pose, lifted.pose_velocity, "m/s, rad/s", "their first derivatives"),
-        f"{name}_pose_acceleration": Variable(pose, lifted.pose_acceleration, second, "their second derivatives"),
+        f"{name}_velocity": _variable(twist, lifted.velocity, "m/s, rad/s", f"velocity {body}"),
+        f"{name}_acceleration": _variable(twist, lifted.acceleration, second, f"acceleration {body}"),
+        f"{name}_pose": _variable(pose, lifted.pose, "m, rad", f"six coordinates of the {name}, R = Rx Ry Rz"),
+        f"{name}_pose_velocity": _variable(pose, lifted.pose_velocity, "m/s, rad/s", "their first derivatives"),
+        f"{name}_pose_acceleration": _variable(pose, lifted.pose_acceleration, second, "their second derivatives"),
     }
 
 
@@ -133,9 +93,11 @@ def _of_grasps(solution: Solution) -> dict[str, Variable]:
     )
     about = f"moment of each agent on the {lifted.name} about its grasp point, world axes; 0 for a point grasp"
     return {
-        "grasp_force": Variable(dimensions, force, "N", f"force of each agent on the {lifted.name}, world axes"),
-        "grasp_moment": Variable(dimensions, moment, "N m", about),
-        "grasp_position": Variable(dimensions, lifted.grasp_position, "m", f"grasp points on the {lifted.name}, world"),
+        "grasp_force": _variable(dimensions, force, "N", f"force of each agent on the {lifted.name}, world axes"),
+        "grasp_moment": _variable(dimensions, moment, "N m", about),
+        "grasp_position": _variable(
+            dimensions, lifted.grasp_position, "m", f"grasp points on the {lifted.name}, world"
+        ),
     }
 
 
@@ -146,8 +108,8 @@ def _of_ground(solution: Solution) -> dict[str, Variable]:
         prefix = f"{person.name}_" if k else ""
         force = f"force of the ground on the {person.name}, world axes"
         moment = f"moment of the ground on the {person.name} at the foot origin, world axes"
-        variables[f"{prefix}ground_reaction_force"] = Variable(dimensions, person.ground_force, "N", force)
-        variables[f"{prefix}ground_reaction_moment"] = Variable(dimensions, person.ground_moment, "N m", moment)
+        variables[f"{prefix}ground_reaction_force"] = _variable(dimensions, person.ground_force, "N", force)
+        variables[f"{prefix}ground_reaction_moment"] = _variable(dimensions, person.ground_moment, "N m", moment)
     return variables
 
 

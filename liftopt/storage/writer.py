@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import errno
 import os
-from io import BytesIO
 from pathlib import Path
-
-import numpy as np
 
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.checksum import with_checksum
 from liftopt.scenario.urdf_files import urdf_files
 from liftopt.solution.solution import Solution
-from liftopt.storage.dataset import NamedArrays, label_attributes, named_arrays
+from liftopt.storage.dataset import to_xarray
 from liftopt.storage.netcdf_file import read_netcdf
 from liftopt.storage.result_folder import MODELS, NETCDF, SCENARIO, UNSOLVED, locked, replace_result
 from liftopt.storage.solved_scenario import scenario_of
@@ -30,7 +27,7 @@ def save(solution: Solution, out: Path) -> Path:
     Raises:
         InputError: the folder or a file cannot be written.
     """
-    content = with_checksum(netcdf_bytes(named_arrays(solution)))
+    content = with_checksum(netcdf_bytes(solution))
     beside = {SCENARIO: solution.scenario.to_toml().encode()}
     beside |= {
         f"{MODELS}/{file}": solution.urdfs[name].encode() for name, file in urdf_files(solution.scenario).items()
@@ -88,24 +85,8 @@ def holds_more_than_an_iterate(folder: Path) -> bool:
         return True
 
 
-def netcdf_bytes(arrays: NamedArrays) -> bytes:
-    """Return a NetCDF-4 file; the same arrays give the same bytes."""
-    import h5netcdf
-    import h5py
-
-    content = BytesIO()
-    with h5netcdf.File(content, "w") as file:
-        for name, labels in arrays.labels.items():
-            file.dimensions[name] = len(labels)
-            text = file.create_variable(name, (name,), dtype=h5py.string_dtype())
-            text[:] = np.array(labels, dtype=object)
-            for key, value in label_attributes(name).items():
-                text.attrs[key] = value
-        file.dimensions["time"] = len(arrays.variables["time"].values)
-        for name, (dimensions, values, units, long_name) in arrays.variables.items():
-            variable = file.create_variable(name, dimensions, data=np.asarray(values, dtype=float))
-            variable.attrs["units"] = units
-            variable.attrs["long_name"] = long_name
-        for key, value in arrays.attributes.items():
-            file.attrs[key] = value
-    return content.getvalue()
+def netcdf_bytes(solution: Solution) -> bytes:
+    """Return a solution's dataset as a NetCDF-4 file; the same solution gives the same bytes."""
+    dataset = to_xarray(solution)
+    whole = {name: {"_FillValue": None} for name in dataset.variables}  # nothing is missing
+    return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=whole))

@@ -260,7 +260,7 @@ import liftopt.search.solve, liftopt.commands.solved_text, h5netcdf
 from liftopt.scenario.model import load_scenario
 from liftopt.scenario.build import agents_of, object_of
 agents_of(load_scenario()), object_of(load_scenario())
-heavy = {"matplotlib", "pandas", "rich", "scipy.interpolate", "scipy.optimize", "trimesh", "xarray", "yourdfpy"}
+heavy = {"matplotlib", "rich", "scipy.interpolate", "scipy.optimize", "trimesh", "yourdfpy"}
 print(*heavy.intersection(sys.modules))
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
