@@ -28,7 +28,7 @@ class Block:
     """Rows of one constraint of one agent or the object.
 
     Attributes:
-        name: ``"closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
+        name: ``"grasp_closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
             ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``.
         who: agent or object.
         rows: where in g.
@@ -137,7 +137,7 @@ def _closure(rows: _Rows, i: int, who: str) -> None:
     knots, axes = rows.layout.mesh.closure_knots, np.arange(3)
     rows.add(rows.outputs_at(i, knots, rows.layout.coordinates[i] + axes), 1.0)
     rows.add(rows.outputs_at(rows.layout.n_agents, knots, OBJECT_SIZE + 3 * i + axes), -1.0)
-    rows.close("closure", who, ("x", "y", "z"), np.zeros(3), np.zeros(3), len(knots))
+    rows.close("grasp_closure", who, ("x", "y", "z"), np.zeros(3), np.zeros(3), len(knots))
 
 
 def _torque(rows: _Rows, i: int, agent: Agent) -> None:

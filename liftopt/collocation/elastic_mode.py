@@ -186,7 +186,7 @@ class SoftProblem(Problem):
         task, names = self.task, [agent.name for agent in self.team.agents]
         phase, who, unit = self.mesh.phase, list(block.labels), "m"
         share = amounts
-        if block.name == "closure":
+        if block.name == "grasp_closure":
             phase = phase[self.mesh.closure_knots]
             amounts, prices = np.linalg.norm(amounts, axis=1)[:, None], prices[:, :1]
             share, who = amounts, [block.who]
@@ -222,7 +222,7 @@ class SoftProblem(Problem):
         return [
             Violation(
                 block.name, who[j], float(phase[k]) * task.duration, float(amounts[k, j]), float(share[k, j]), units[j],
-                float((prices * share if block.name == "closure" else share * SHARE_PRICE)[:, j].sum()),
+                float((prices * share if block.name == "grasp_closure" else share * SHARE_PRICE)[:, j].sum()),
             )
             for j, k in enumerate(worst)
             if share[k, j] > least
@@ -240,7 +240,7 @@ class SoftProblem(Problem):
         return self._unit_price(block)
 
     def _unit_price(self, block: Block) -> Array:
-        if block.name == "closure":
+        if block.name == "grasp_closure":
             return np.full(len(block.lower), CLOSURE_PRICE)
         if block.name == "workspace":
             return np.full(len(block.lower), WORKSPACE_PRICE)

@@ -81,7 +81,7 @@ def _phases(mesh: Mesh, block: Block) -> Array:
     """Return when the rows of a block act."""
     if block.name == "velocity":
         return mesh.slope_phase
-    return mesh.phase[mesh.closure_knots] if block.name == "closure" else mesh.phase
+    return mesh.phase[mesh.closure_knots] if block.name == "grasp_closure" else mesh.phase
 
 
 def _spread(values: Array, phase: Array, onto: Array) -> Array:

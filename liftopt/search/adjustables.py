@@ -80,7 +80,10 @@ class Adjustable:
         return all(key.startswith("task.end." if when == 0.0 else "task.start.") for key in self.keys)
 
 
-_REACH, _MOTION = frozenset({"closure", "workspace"}), frozenset({"closure", "workspace", "torque", "velocity"})
+_REACH, _MOTION = (
+    frozenset({"grasp_closure", "workspace"}),
+    frozenset({"grasp_closure", "workspace", "torque", "velocity"}),
+)
 _STRENGTH = frozenset({"torque", "grasp_force"})
 _POSTURE = _REACH | {"torque"}
 
@@ -89,7 +92,7 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
     """Return what may be changed in a scenario, the simplest first."""
     found = [
         Adjustable(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
-                   frozenset({"velocity", "torque", "grasp_force", "closure"}), 600, relative=True),
+                   frozenset({"velocity", "torque", "grasp_force", "grasp_closure"}), 600, relative=True),
         Adjustable(("object.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
         Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
                    frozenset({"grasp_force"}), 512, relative=True),

@@ -64,9 +64,9 @@ class Candidate:
 
     @property
     def refinable(self) -> bool:
-        """Whether closure between knots is all that is wrong."""
+        """Whether grasp closure between knots is all that is wrong."""
         return self.outcome == SOLVED and [c.name for c in self.verification.checks if not c.passed] == [
-            "closure between knots"
+            "grasp closure between knots"
         ]
 
     @property

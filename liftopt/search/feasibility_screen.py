@@ -100,7 +100,7 @@ def _screen_end(
     who = problem.team.agents[int(np.argmax(gaps))].name
     text = f"out of reach at the {name} of the lift: {whose(who)} grasp stays {gaps.max():.3f} m short"
     text += _range_of_motion(problem, kinematics, pose, again, deadline)
-    return InfeasibilityReason("closure", who, float(gaps.max()), "m", text), near
+    return InfeasibilityReason("grasp_closure", who, float(gaps.max()), "m", text), near
 
 
 def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> InfeasibilityReason:

@@ -61,7 +61,7 @@ class InverseKinematics:
         self.problem = problem
         blocks = problem.constraints.blocks
         names = [agent.name for agent in problem.team.agents]
-        closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "closure"]
+        closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "grasp_closure"]
         workspace = [b for name in ("workspace", "grasp_turn") for b in blocks if b.name == name]
         self._kept = [names.index(b.who) + len(names) * (b.name == "grasp_turn") for b in workspace]
         self._offset = np.array([float(b.lower[0]) for b in workspace])

@@ -80,7 +80,7 @@ def unmet(accuracy: Accuracy, wanted: Refine) -> str:
     """Return what is not accurate enough, with its value and what is asked for, in one line; empty if all is."""
     figures = (
         ("estimated error of the objective", accuracy.objective_error, wanted.objective_error, 100.0, " %"),
-        ("closure between knots", accuracy.closure, wanted.closure, 1e3, " mm"),
+        ("grasp closure between knots", accuracy.closure, wanted.closure, 1e3, " mm"),
         ("balance between knots", accuracy.balance, wanted.balance, 1.0, " N, Nm"),
         ("torque above its limit between knots", accuracy.torque_excess, wanted.torque_excess, 1.0, " Nm"),
     )

@@ -130,7 +130,7 @@ def refine_until_verified(session: Session, found: Found) -> Found:
 
     def refine(coarse: Found, intervals: int) -> Found:
         candidate = coarse.best
-        gap = candidate.verification.check("closure between knots").value
+        gap = candidate.verification.check("grasp closure between knots").value
         fine = refine_mesh(session, [candidate], intervals)
         if fine is None:
             spline = candidate.spline.on(intervals)
@@ -138,7 +138,7 @@ def refine_until_verified(session: Session, found: Found) -> Found:
             fine = solve_starts(session, spline, [InitialGuess("refined", x)])
         session.notes.append(
             f"mesh refined from N = {candidate.spline.intervals} to {intervals}: "
-            f"closure between knots was {1e3 * gap:.2f} mm, {1e3 * CLOSURE_BETWEEN_KNOTS:g} mm is allowed"
+            f"grasp closure between knots was {1e3 * gap:.2f} mm, {1e3 * CLOSURE_BETWEEN_KNOTS:g} mm is allowed"
         )
         return fine
 

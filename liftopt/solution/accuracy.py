@@ -44,7 +44,8 @@ class Accuracy:
     def between_knots(verification: Verification) -> Accuracy:
         """Return what a verification knows; the objective is not estimated."""
         closure, balance, torque = (
-            float(verification.check(f"{name} between knots").value) for name in ("closure", "balance", "torque limits")
+            float(verification.check(f"{name} between knots").value)
+            for name in ("grasp closure", "balance", "torque limits")
         )
         return Accuracy(closure, balance, torque)
 

@@ -10,7 +10,7 @@ class InfeasibilityReason:
     """What is in the way.
 
     Attributes:
-        constraint: ``"closure"``, ``"torque"``, ``"velocity"``...; see ``Block``.
+        constraint: ``"grasp_closure"``, ``"torque"``, ``"velocity"``...; see ``Block``.
         who: agent, joint or object.
         amount: how far it is from being met, in ``unit``.
         unit: of ``amount``; ``"times the limit"`` for strength.

@@ -35,8 +35,8 @@ def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tol
     knots = fine.every(FINER)
     optimality = kkt_error(problem, result.x, result.multipliers)
     checks = [
-        _closure("closure at the knots", knots, AT_KNOTS, problem.mesh.closure_knots),
-        _closure("closure between knots", fine, CLOSURE_BETWEEN_KNOTS, np.arange(len(fine.time))),
+        _closure("grasp closure at the knots", knots, AT_KNOTS, problem.mesh.closure_knots),
+        _closure("grasp closure between knots", fine, CLOSURE_BETWEEN_KNOTS, np.arange(len(fine.time))),
         *_balance(problem, knots, fine),
         *_limits(problem, knots, AT_KNOTS, ""),
         *_limits(problem, fine, np.inf, BETWEEN_KNOTS),

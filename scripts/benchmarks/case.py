@@ -72,7 +72,7 @@ class Case:
         Closure between its knots is not asked for: where that is too wide a lift goes on to a finer mesh.
         """
         found = verify(self.problem, self.spline, result, TOLERANCE)
-        wrong = {check.name for check in found.checks if not check.passed} - {"closure between knots"}
+        wrong = {check.name for check in found.checks if not check.passed} - {"grasp closure between knots"}
         return result.converged and found.kkt_error <= TOLERANCE and not wrong
 
 

@@ -217,7 +217,9 @@ def test_an_iterate_is_not_judged_and_its_suggested_changes_name_keys(light: Sol
     failed = replace(
         light,
         outcome="infeasible: too far",
-        reasons=(InfeasibilityReason("closure", "robot", 0.2, "m", "the robot's grasp stays 0.200 m short", 0.0),),
+        reasons=(
+            InfeasibilityReason("grasp_closure", "robot", 0.2, "m", "the robot's grasp stays 0.200 m short", 0.0),
+        ),
         suggested_changes=(SuggestedChange(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),),
     )
     assessment = assess(failed)

@@ -140,7 +140,7 @@ def test_rows_by_name(plain: tuple[Plain, np.ndarray, np.ndarray], newton_euler:
     for i, agent in enumerate(problem.team.agents):
         tau, point = reference.agents[i]
         columns = problem.layout.columns(i)
-        _, closure = rows_of(problem, g, "closure", agent.name)
+        _, closure = rows_of(problem, g, "grasp_closure", agent.name)
         np.testing.assert_allclose(closure, point - reference.grasp(i), atol=1e-12)
         block, torque = rows_of(problem, g, "torque", agent.name)
         scale = np.maximum(-agent.limits.tau_lower, agent.limits.tau_upper)
@@ -178,7 +178,7 @@ def test_blocks_cover_all_rows_in_order(problem: Problem) -> None:
     assert ends[-1] == problem.constraints.linear.shape[0] == problem.nlp.g.shape[0]
     assert all(len(block.lower) == block.rows.stop - block.rows.start for block in blocks)
     assert {(b.name, b.who) for b in blocks} == {
-        *((name, who) for name in ("closure", "torque", "grasp_force", "velocity") for who in ("human", "robot")),
+        *((name, who) for name in ("grasp_closure", "torque", "grasp_force", "velocity") for who in ("human", "robot")),
         ("workspace", "human"),
         ("balance", "table"),
         ("velocity", "table"),

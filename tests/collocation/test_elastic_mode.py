@@ -55,8 +55,8 @@ def test_a_robot_too_far_away_leaves_the_gap_of_inverse_kinematics_and_the_objec
     found = solve_elastic(problem, naive_guess(problem).x, NEVER)
     first = found.violations[0]
     assert found.converged
-    assert (first.constraint, first.unit) == ("closure", "m")
-    gaps = sum(v.amount for v in found.violations if v.constraint == "closure")
+    assert (first.constraint, first.unit) == ("grasp_closure", "m")
+    gaps = sum(v.amount for v in found.violations if v.constraint == "grasp_closure")
     # The price is on the sum of the components, which is up to sqrt(3) of the distance.
     shortest = min(reason.amount for reason in reasons)
     assert shortest - 1e-4 < gaps < 3**0.5 * max(reason.amount for reason in reasons)

@@ -90,7 +90,7 @@ def test_three_agents_on_one_object(
     team = Team.of((human, sawyer, make_arm(4)), lifted)
     problem = Problem(team, make_task(3), RestToRestSpline(6).mesh())
     assert problem.layout.n_x == 7 * (10 + 7 + 4 + 6) + 7 * 9
-    assert sum(block.name == "closure" for block in problem.constraints.blocks) == 3
+    assert sum(block.name == "grasp_closure" for block in problem.constraints.blocks) == 3
     check_derivatives(problem)
 
 

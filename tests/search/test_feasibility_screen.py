@@ -53,7 +53,7 @@ def test_shortfall_grows_as_the_robot_is_moved_away() -> None:
     """Out of reach the arm is stretched: half a metre farther along it is half a metre more."""
     near, far = _reasons("task.standing_distance=3.0"), _reasons("task.standing_distance=3.5")
     for one, other, end in zip(near, far, ("start", "end"), strict=True):
-        assert (one.constraint, one.who, one.unit) == ("closure", "robot", "m")
+        assert (one.constraint, one.who, one.unit) == ("grasp_closure", "robot", "m")
         assert 0.49 < other.amount - one.amount <= 0.5 + 1e-6
         assert f"out of reach at the {end} of the lift: the robot's grasp stays {one.amount:.3f} m short" in one.message
 
@@ -62,7 +62,7 @@ def test_a_person_who_cannot_reach_is_named() -> None:
     """1.1 m ahead of the feet is beyond a person of 1.2 m; the robot stands as far from the object as by default."""
     ahead = ["task.start.human_distance=1.1", "task.end.human_distance=1.1", "task.standing_distance=2.6"]
     reasons = _reasons("human.stature=1.2", *ahead)
-    assert [(o.constraint, o.who) for o in reasons] == [("closure", "human")] * 2
+    assert [(o.constraint, o.who) for o in reasons] == [("grasp_closure", "human")] * 2
     assert "at the start of the lift: the human's grasp stays" in reasons[0].message
 
 
@@ -97,7 +97,7 @@ def test_a_joint_that_cannot_bend_enough_is_named() -> None:
     reasons, _ = screen_ends(replace(problem, team=replace(problem.team, agents=(stiff, robot))), 0, NEVER)
     assert reasons
     for reason in reasons:
-        assert reason.constraint == "closure" and reason.amount > 1e-3
+        assert reason.constraint == "grasp_closure" and reason.amount > 1e-3
         named = re.search(r"\(with (.*) beyond the range of motion it would reach\)", reason.message)
         assert named and re.search(r"human_Q\d+ \d+ deg", named.group(1))
 

@@ -91,7 +91,7 @@ def test_a_robot_too_far_away_is_to_come_as_near_as_it_must_reach() -> None:
     solution, farthest = _solution(*FAR), min(_farthest(0.9), _farthest(1.4))
     assert not solution.solved
     assert [(r.constraint, r.who, r.time) for r in solution.reasons] == [
-        ("closure", "robot", 0.0), ("closure", "robot", 2.0)
+        ("grasp_closure", "robot", 0.0), ("grasp_closure", "robot", 2.0)
     ]  # fmt: skip
     nearer = _value(solution, "task.standing_distance")
     assert farthest - 0.02 <= nearer <= farthest

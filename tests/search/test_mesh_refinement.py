@@ -59,7 +59,7 @@ def test_refined_lift_meets_its_tolerances_and_the_second_transcriptions_limit(r
     assert accuracy.objective_limit == pytest.approx(LIMIT_OF_TABLE5, rel=2e-3)
     assert abs(accuracy.objective_limit - LIMIT_OF_TABLE5) <= accuracy.objective_bar
     # What it says of the knots is what Pinocchio finds on a finer grid.
-    assert accuracy.closure == refined.verification.check("closure between knots").value
+    assert accuracy.closure == refined.verification.check("grasp closure between knots").value
     assert accuracy.balance == refined.verification.check("balance between knots").value
     assert any(note.startswith(f"mesh refined from N = 20 to {refined.intervals}") for note in refined.notes)
     assert [start.name for start in refined.starts].count(refined.kept_start) == 1
@@ -171,7 +171,7 @@ def test_multipliers_keep_the_sum_over_time(coarse: Candidate) -> None:
 def _candidate(intervals: int, objective: float, bent: float = 0.0, rest: str = "velocity") -> Any:
     spline = RestToRestSpline(intervals, rest)
     control = bent * np.sin(np.pi * spline.greville)[:, None]
-    checks = {"closure between knots": 2e-4, "balance between knots": 0.05, "torque limits between knots": 0.0}
+    checks = {"grasp closure between knots": 2e-4, "balance between knots": 0.05, "torque limits between knots": 0.0}
     return SimpleNamespace(
         spline=spline,
         problem=SimpleNamespace(unpack=lambda x: (control, None)),

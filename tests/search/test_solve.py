@@ -112,7 +112,9 @@ def test_coarse_mesh_is_refined_and_that_is_said(solved: Callable[..., Any]) -> 
     last = f", N = {solution.intervals}"
     names = [f"posture pair 1{last}", f"posture pair 1{WITHOUT_MULTIPLIERS}{solution.intervals}{last}"]
     assert [start.name for start in solution.starts[-2:]] == names and solution.kept_start in names
-    assert any(note.startswith("mesh refined from N = 10 to 20: closure between knots was") for note in solution.notes)
+    assert any(
+        note.startswith("mesh refined from N = 10 to 20: grasp closure between knots was") for note in solution.notes
+    )
 
 
 def test_progress_is_told_a_line_at_a_time() -> None:

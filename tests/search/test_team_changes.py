@@ -43,7 +43,9 @@ def test_an_object_before_someone_turned_moves_along_the_axes() -> None:
 def test_a_third_robot_out_of_reach_may_come_nearer_by_what_it_lacks() -> None:
     """On the grid of 1 cm, along either axis; where no robot but the partner stands, there is none to move."""
     scenario = load_scenario(TEAMS / "person_two_sawyers.toml", {"right.base.x": 3.2})
-    short = InfeasibilityReason("closure", "right", 1.115, "m", "right's grasp stays 1.115 m short", 0.0, static=True)
+    short = InfeasibilityReason(
+        "grasp_closure", "right", 1.115, "m", "right's grasp stays 1.115 m short", 0.0, static=True
+    )
     found = by_keys(scenario)["right.base.x"]
     steps = found.hint(scenario, [short])
     assert steps == 112

@@ -35,7 +35,7 @@ def test_finer_grid_shows_the_closure_that_the_verification_found_on_the_solvers
         np.linalg.norm(agent.grasp_position - dense.object.grasp_position[:, i], axis=1).max()
         for i, agent in enumerate(dense.agents)
     ]
-    found = solution.verification.check("closure between knots").value
+    found = solution.verification.check("grasp closure between knots").value
     assert max(gaps) == pytest.approx(found, rel=1e-6)
 
 

@@ -72,7 +72,7 @@ def test_an_untouched_result_passes(solve: Solve) -> None:
 @pytest.mark.parametrize(("column", "who"), [(3, "human"), (12, "robot")])
 def test_a_moved_joint_opens_the_loop_of_its_own_agent(solve: Solve, column: int, who: str) -> None:
     verification = solve.verify(solve.with_control(column, 1e-4))
-    check = verification.check("closure at the knots")
+    check = verification.check("grasp closure at the knots")
     assert not check.passed
     # The control point's basis function peaks at the knot of its index, two thirds of its height.
     assert 1e-6 < check.value < 1e-4
@@ -87,7 +87,7 @@ def test_a_changed_force_tips_the_balance(solve: Solve, axis: int, row: str) -> 
     assert not check.passed
     assert check.value == pytest.approx(2e-3, rel=0.1)
     assert check.where == f"table {row} at 0.70 s"
-    assert "closure at the knots" not in _failed(verification)
+    assert "grasp closure at the knots" not in _failed(verification)
 
 
 def test_a_squeeze_beyond_the_cap_is_seen_though_the_object_stays_in_balance(solve: Solve) -> None:
@@ -199,15 +199,15 @@ def test_a_solver_that_was_fed_a_wrong_robot_is_found_out(solve: Solve) -> None:
     result = Ipopt(fooled).solve(solve.result.x, deadline=NEVER)
     verification = solve.verify(result)
     assert not verification.passed
-    assert {"closure at the knots", "objective by Pinocchio"} <= _failed(verification)
+    assert {"grasp closure at the knots", "objective by Pinocchio"} <= _failed(verification)
 
 
 @pytest.mark.parametrize(
     ("part", "names"),
     [
-        ("joint", {"closure at the knots", "position limits", "speed limits", "torque limits"}),
+        ("joint", {"grasp closure at the knots", "position limits", "speed limits", "torque limits"}),
         ("force", {"balance at the knots", "torque limits", "grasp force cap"}),
-        ("end", {"pose at the ends", "speed at the ends", "closure at the knots", "position limits"}),
+        ("end", {"pose at the ends", "speed at the ends", "grasp closure at the knots", "position limits"}),
     ],
 )
 def test_nan_passes_nothing_that_it_touches(solve: Solve, part: str, names: set[str]) -> None:

@@ -109,7 +109,7 @@ def test_page_tells_the_assessment_and_nothing_else(page: str, result: Any) -> N
 def test_a_value_without_a_limit_is_never_ok(result: Any) -> None:
     rows = {row["name"]: row for row in check_rows(summary_dict(result.solution))}
     assert rows["balance between knots"]["state"] == rows["unserved moment"]["state"] == "no limit"
-    assert rows["closure at the knots"]["state"] == rows["first-order optimality (KKT error)"]["state"] == "ok"
+    assert rows["grasp closure at the knots"]["state"] == rows["first-order optimality (KKT error)"]["state"] == "ok"
 
 
 def test_an_unsolved_result_is_no_prediction(result: Any) -> None:

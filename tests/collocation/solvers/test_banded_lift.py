@@ -154,7 +154,7 @@ def test_rows_are_measured_as_casadi_has_them(small_lift: Problem, banded: Bande
     banded.evaluate(x, small_lift)
     sizes = banded._nlp.row_sizes(x)
     closure = np.concatenate(
-        [np.arange(len(exact))[block.rows] for block in small_lift.constraints.blocks if block.name == "closure"]
+        [np.arange(len(exact))[block.rows] for block in small_lift.constraints.blocks if block.name == "grasp_closure"]
     )
     np.testing.assert_allclose(sizes[closure], exact[closure], rtol=1e-12)
     assert (exact <= 3 * sizes * (1 + 1e-12)).all()
