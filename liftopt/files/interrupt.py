@@ -1,13 +1,15 @@
 """Ctrl-C while a command runs: it acts even where the first KeyboardInterrupt is swallowed, and the second one ends.
 
 Python raises KeyboardInterrupt wherever it is. Where that is a conversion or a callback inside CasADi's bindings, they
-take it for a failed attempt: it is dropped, or comes out as another error.
+take it for a failed attempt: it is dropped, or comes out as another error. Where it is a weak reference's callback or
+a finaliser, as in Python's own import system, Python prints it and drops it.
 """
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -54,6 +56,12 @@ def interrupts() -> Iterator[Interrupts]:
         found.noted = True
         raise KeyboardInterrupt
 
+    def drop(report: sys.UnraisableHookArgs) -> None:
+        # ``check`` raises it again: it is not for the user to read.
+        if not (found.noted and issubclass(report.exc_type, KeyboardInterrupt)):
+            unraisable(report)
+
+    unraisable, sys.unraisablehook = sys.unraisablehook, drop
     signal.signal(signal.SIGINT, note)
     try:
         yield found
@@ -63,3 +71,4 @@ def interrupts() -> Iterator[Interrupts]:
         raise
     finally:
         signal.signal(signal.SIGINT, handler)
+        sys.unraisablehook = unraisable

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,25 @@ import pytest
 from liftopt.storage.reader import load_result
 
 PATIENCE = 300.0  # [s], only so that a hang fails
+# Ctrl-C in the callback of a weak reference, as Python's import system has them: an exception cannot go on there.
+IN_A_CALLBACK = """
+import signal, weakref
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from liftopt.files.interrupt import interrupts
+
+class Thing: pass
+
+thing = Thing()
+reference = weakref.ref(thing, lambda _: signal.raise_signal(signal.SIGINT))
+try:
+    with interrupts() as found:
+        del thing
+        print("on")
+        found.check()
+        print("lost")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
 # A shell may start the tests in the background, where Ctrl-C is ignored; the command has it as on a terminal.
 SOLVE = """
 import signal, sys
@@ -28,7 +48,10 @@ sys.exit(main(["solve", "--out", sys.argv[1], "--set", "solver.starts=2"]))
 
 def _child(code: str, *arguments: str) -> subprocess.Popen[str]:
     command = [sys.executable, "-c", code, *arguments]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # Not in the source tree, which would be imported instead of what is installed.
+    return subprocess.Popen(
+        command, cwd=tempfile.gettempdir(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
@@ -53,6 +76,12 @@ def test_ctrl_c_leaves_no_result_and_no_trace(after: float, tmp_path: Path) -> N
         assert list(tmp_path.iterdir()) == []
     else:  # Python itself was still starting
         assert "KeyboardInterrupt" in err
+
+
+def test_ctrl_c_where_python_drops_it_is_neither_printed_nor_lost() -> None:
+    out, err = _child(IN_A_CALLBACK).communicate(timeout=PATIENCE)
+    assert out.split() == ["on", "interrupted"]
+    assert err == ""
 
 
 def test_ctrl_c_inside_the_solver_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
