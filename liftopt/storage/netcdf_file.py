@@ -15,7 +15,7 @@ from liftopt.storage.netcdf_sandbox import Contents, contents, unpacked
 LARGEST_FILE = 50_000_000  # bytes; a lift on 400 intervals has some 300 kB
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 READ = "import sys; sys.path[:] = sys.argv[1:]; from liftopt.storage.netcdf_sandbox import main; main()"
-PATIENCE = 20.0  # seconds; reading takes a tenth of one
+READ_PATIENCE = 20.0  # seconds; reading takes a tenth of one
 
 
 def read_netcdf(path: Path) -> Contents:
@@ -45,9 +45,11 @@ def _apart(image: bytes) -> Contents:
     environment = os.environ | {"HDF5_PLUGIN_PRELOAD": "::"}
     command = [sys.executable, "-I", "-c", READ, *map(os.path.abspath, paths)]
     try:
-        run = subprocess.run(command, input=image, env=environment, capture_output=True, timeout=PATIENCE, check=False)
+        run = subprocess.run(
+            command, input=image, env=environment, capture_output=True, timeout=READ_PATIENCE, check=False
+        )
     except subprocess.TimeoutExpired:
-        raise ValueError(f"it is damaged: reading it takes more than {PATIENCE:g} s") from None
+        raise ValueError(f"it is damaged: reading it takes more than {READ_PATIENCE:g} s") from None
     if run.returncode < 0:
         raise ValueError("it is damaged: the HDF5 library crashes on it")
     if run.returncode:

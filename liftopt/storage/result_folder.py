@@ -27,7 +27,7 @@ NETCDF, SCENARIO, MODELS = "solution.nc", "scenario.toml", "models"
 SCENARIO_TEXT, URDF_TEXT = "scenario", "urdf_"  # attributes of solution.nc; the latter goes on with a model's name
 UNSOLVED = "unsolved"  # folder for the iterate of a failed solve, within that of a solved result
 WORK_PREFIX = ".writing-result-"
-PATIENCE = 10.0  # seconds; a result is written in a tenth of one
+LOCK_PATIENCE = 10.0  # seconds; a result is written in a tenth of one
 
 
 def holds_result(folder: Path) -> bool:
@@ -100,7 +100,7 @@ def locked(folder: Path) -> Iterator[None]:
     """Keep other writers of the folder's result out; where nothing locks, nothing waits.
 
     Raises:
-        InputError: another process has held it for ``PATIENCE`` seconds.
+        InputError: another process has held it for ``LOCK_PATIENCE`` seconds.
     """
     descriptor = _locked_descriptor(folder)
     try:
@@ -117,7 +117,7 @@ def _locked_descriptor(folder: Path) -> int | None:
         descriptor = os.open(folder, os.O_RDONLY)
     except (ImportError, OSError):  # no such locks on this system, or no folder: using it says what is wrong
         return None
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + LOCK_PATIENCE
     try:
         while True:
             try:
@@ -125,7 +125,7 @@ def _locked_descriptor(folder: Path) -> int | None:
                 return descriptor
             except BlockingIOError:
                 if time.monotonic() > until:
-                    why = f"another process has been writing the result there for {PATIENCE:g} s"
+                    why = f"another process has been writing the result there for {LOCK_PATIENCE:g} s"
                     raise InputError(str(folder), NO_VALUE, why) from None
                 time.sleep(0.01)
             except OSError:  # a network file system without locks

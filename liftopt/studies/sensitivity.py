@@ -36,7 +36,7 @@ SMALLEST = 0.1  # what counts as the value of a parameter that is smaller
 HALVINGS = 4  # of the change that a reader thinks in
 # Slopes of a step and of half of it agree to this share, what up and down do to the other; what is less than NOTHING,
 # as a share of the figure now or of the whole, is none at all.
-SAME, SYMMETRIC, NOTHING = 0.10, 0.25, 0.002
+AGREEMENT, SYMMETRIC, NOTHING = 0.10, 0.25, 0.002
 SHARP = 1e-8  # KKT error to which the optimum is polished before it is differentiated
 # Another motion: further from the optimum by this [rad, m] than so many times what the tangent says.
 ELSEWHERE, FURTHER = 0.1, 3.0
@@ -255,7 +255,7 @@ class _Differences:
             whole, half = (up - down) / 2, halves.high[name] - halves.low[name]
             least = NOTHING * (abs(now) if name in self.relative else 1.0)
             bend = abs(up + down) / 2 / max(SYMMETRIC * abs(whole), least)
-            differs = abs(whole - half) / max(SAME * abs(whole), least)
+            differs = abs(whole - half) / max(AGREEMENT * abs(whole), least)
             if max(bend, differs) > excess:
                 excess = max(bend, differs)
                 scale = 100.0 / (abs(now) if name in self.relative else 1.0)

@@ -27,7 +27,7 @@ from liftopt.viz.who import colour_of, robot_of
 WOOD: Colour = (0.78, 0.60, 0.38)
 SHADE = 0.75  # of a shirt against the arrows of who wears it
 PATH_RADIUS = 0.004  # [m]
-SAME = 1e-4  # distance below which two parts are in one place [m]
+SAME_POINT = 1e-4  # distance below which two parts are in one place [m]
 GHOST_COLOUR, GHOST_TINT, GHOST_OPACITY = (0.45, 0.25, 0.80), 0.65, 0.40
 
 
@@ -139,20 +139,20 @@ def _shirt(cast: Cast, person: AgentTrajectory) -> Colour:
 def _stands_still(part: Part, cast: Cast) -> bool:
     if part.body in (GROUND, cast.solution.object.name):
         return part.body == GROUND
-    return bool(np.ptp(cast.playback.bodies[part.body].position, axis=0).max() < SAME)
+    return bool(np.ptp(cast.playback.bodies[part.body].position, axis=0).max() < SAME_POINT)
 
 
 def _is_same(part: Part, cast: Cast, twin: Part | None, first: Cast) -> bool:
     """Whether a part has the shape of another lift's and is where that one is all the time."""
     if twin is None or part.mesh.vertices.shape != twin.mesh.vertices.shape:
         return False
-    if not np.allclose(part.mesh.vertices, twin.mesh.vertices, rtol=0.0, atol=SAME):
+    if not np.allclose(part.mesh.vertices, twin.mesh.vertices, rtol=0.0, atol=SAME_POINT):
         return False
     if part.body == GROUND:
         return True
     here, there = cast.playback.bodies[part.body], first.playback.bodies[part.body]
     return here.position.shape == there.position.shape and all(
-        np.allclose(a, b, rtol=0.0, atol=SAME)
+        np.allclose(a, b, rtol=0.0, atol=SAME_POINT)
         for a, b in ((here.position, there.position), (here.quaternion, there.quaternion))
     )
 

@@ -155,7 +155,7 @@ def test_a_reader_beside_a_writer_never_sees_a_mix(pair: Pair, tmp_path: Path) -
 def test_a_writer_does_not_wait_for_ever_and_a_reader_not_at_all(
     pair: Pair, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("liftopt.storage.result_folder.PATIENCE", 0.1)
+    monkeypatch.setattr("liftopt.storage.result_folder.LOCK_PATIENCE", 0.1)
     out = Path(shutil.copytree(pair.older, tmp_path / "out"))
     with locked(out):
         assert load_result(out).scenario.name == "table5_near"
