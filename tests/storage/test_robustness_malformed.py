@@ -305,11 +305,11 @@ def test_a_read_that_hangs_is_ended(
 
     folder = Path(shutil.copytree(result, tmp_path / "result"))
     rewritten(folder, lambda file: None, checksum=False)
-    monkeypatch.setattr(netcdf_file, "PATIENCE", 0.2)
+    monkeypatch.setattr(netcdf_file, "READ_PATIENCE", 0.2)
     monkeypatch.setattr(netcdf_file, "READ", "import time; time.sleep(60)")
     with pytest.raises(InputError, match=r"it is damaged: reading it takes more than 0.2 s"):
         load_result(folder)
-    monkeypatch.setattr(netcdf_file, "PATIENCE", 60.0)
+    monkeypatch.setattr(netcdf_file, "READ_PATIENCE", 60.0)
     monkeypatch.setattr(netcdf_file, "READ", "import os; os.abort()")
     with pytest.raises(InputError, match="it is damaged: the HDF5 library crashes on it"):
         load_result(folder)
