@@ -24,7 +24,7 @@ from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_part import Colour
 from liftopt.viz.scene_stage import stage_commands
 from liftopt.viz.viewer_views import agents_in, head_of, views_of
-from liftopt.viz.who import colour_of
+from liftopt.viz.who import colour_of, lead_of
 
 LONGEST_ARROW = 0.40  # [m]: of the largest force shown
 APART = 2.2  # [m] between two lifts side by side, along Y
@@ -125,8 +125,7 @@ def _labels(casts: Sequence[Cast]) -> list[dict[str, Any]]:
     for cast, name in zip(casts, _names(casts), strict=True):
         agents = cast.solution.agents
         if len(casts) > 1:
-            first = next(iter(cast.solution.persons), agents[0])
-            labels.append(_label(cast, first, name + (" (ghost)" if cast.ghost else ""), cast.colour))
+            labels.append(_label(cast, lead_of(agents), name + (" (ghost)" if cast.ghost else ""), cast.colour))
         for agent in agents:
             if not who_is(agent, agents).is_alone:
                 labels.append(_label(cast, agent, agent.name, colour_of(agents, agent)))

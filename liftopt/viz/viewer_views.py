@@ -12,6 +12,7 @@ from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
 from liftopt.viz.scene import Cast
+from liftopt.viz.who import lead_of
 
 Box = list[list[float]]
 # Around joints: what of a person, a robot and the hands is in view [m].
@@ -53,7 +54,7 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
     boxes = {agent.name: _agent_box(casts, agent) for agent in agents}
     whole = _plain(np.vstack(list(boxes.values())))
     points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
-    first = next((agent for agent in agents if agent.kind == "person"), agents[0])
+    first = lead_of(agents)
     aside = any(cast.offset != casts[0].offset for cast in casts)
     whose = f"{who_is(first, agents).called}'s"
     views = [

@@ -1,4 +1,4 @@
-"""Who is who in a picture: the colour of each agent, and what the scenario says of a robot."""
+"""Who is who in a picture: each one's colour, from whom it is looked at, and what the scenario says of a robot."""
 
 from __future__ import annotations
 
@@ -17,6 +17,11 @@ COLOURS: tuple[Colour, ...] = ((0.02, 0.45, 0.70), (0.90, 0.45, 0.0), (0.0, 0.55
 def colour_of(agents: Sequence[AgentTrajectory], agent: AgentTrajectory) -> Colour:
     """Return the colour of an agent's arrow and path."""
     return COLOURS[[other.name for other in agents].index(agent.name) % len(COLOURS)]
+
+
+def lead_of(agents: Sequence[AgentTrajectory]) -> AgentTrajectory:
+    """Return the first person, from whom a picture is looked at; the first agent if there is none."""
+    return next((agent for agent in agents if agent.kind == "person"), agents[0])
 
 
 def stand_opposite(scenario: Scenario) -> bool:
