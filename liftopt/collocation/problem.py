@@ -15,11 +15,11 @@ from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pa
 from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.constraints import Constraints, build_constraints
 from liftopt.collocation.dynamics import STRUCTURAL_ZERO, Topology, agent_functions, object_functions
-from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
+from liftopt.collocation.layout import FORCE_SIZE, Layout
+from liftopt.collocation.objective import Weights, agent_weights, object_weights
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask
 from liftopt.collocation.wrench_dynamics import (
-    WRENCH_SIZE,
     WrenchTopology,
     wrench_agent_functions,
     wrench_object_functions,
@@ -109,7 +109,8 @@ class Problem:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The agents and the object as the assembly takes them."""
-        return tuple(Part(kernel, self.layout.select(i)) for i, kernel in enumerate(self.team.kernels))
+        kernels = enumerate(self.team.kernels)
+        return tuple(Part(kernel, self.layout.select(i), self.weights(i).range.shape[1]) for i, kernel in kernels)
 
     @cached_property
     def constraints(self) -> Constraints:
@@ -128,35 +129,27 @@ class Problem:
         packed = []
         for i in range(len(self.parts)):
             kernel = np.concatenate([[self.task.duration], self.team.topologies[i].parameters])
-            packed.append(PartParameters(kernel, *self.weights(i)))
+            packed.append(PartParameters(kernel, self.weights(i)))
         return pack(packed)
 
     def same_structure(self, other: Problem) -> bool:
         """Whether unknowns and rows of both mean the same, so that an optimum of one is a start for the other."""
         rows = ([(block.name, block.who, block.rows) for block in p.constraints.blocks] for p in (self, other))
         kernels = zip(self.team.kernels, other.team.kernels, strict=True)
-        return self.mesh is other.mesh and all(a is b for a, b in kernels) and next(rows) == next(rows)
+        ranged = ([part.n_range for part in p.parts] for p in (self, other))
+        same = next(rows) == next(rows) and next(ranged) == next(ranged)
+        return same and self.mesh is other.mesh and all(a is b for a, b in kernels)
 
     def interchangeable(self, other: Problem) -> bool:
         """Whether a solver made for one takes the other: only bounds and parameters may differ."""
         return self.same_structure(other) and self.constraints.same_rows(other.constraints)
 
-    def weights(self, part: int) -> tuple[Array, Array]:
-        """Return the weights of a part's squared leading outputs and squared knot variables in the objective.
-
-        The integrals over time are T times those over the phase, and qdd = q'' / T**2.
-        """
-        task, kernel, agent = self.task, self.team.kernels[part], part < len(self.team.agents)
-        n = self.team.coordinates[part] if agent else OBJECT_SIZE
-        c_weight, y_weight = np.zeros(kernel.n_squared), np.zeros(kernel.n_y)
-        y_weight[:n] = self.posture_weight
-        y_weight[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
-        if agent:
-            y_weight[3 * n : 3 * n + FORCE_SIZE] = task.force_weight * task.duration
-            moments = y_weight[3 * n + FORCE_SIZE : 3 * n + WRENCH_SIZE]
-            moments[:] = task.force_weight * task.duration / self.team.agents[part].grasp.breadth ** 2
-            c_weight[:] = task.agent_weights[part] * task.duration
-        return c_weight, y_weight
+    def weights(self, part: int) -> Weights:
+        """Return what the objective weighs of a part."""
+        agents, n_y = self.team.agents, self.team.kernels[part].n_y
+        if part < len(agents):
+            return agent_weights(self.task, part, agents[part], n_y, self.posture_weight)
+        return object_weights(self.task, n_y, self.posture_weight)
 
     def bounds(self) -> tuple[Array, Array]:
         """Return lower and upper bounds (n_x,) of the unknowns.

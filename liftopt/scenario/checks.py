@@ -15,7 +15,7 @@ from liftopt.scenario.urdf_files import urdf_files
 
 OWN_PLACE = "give the object's own x, y and z"
 # Names that results have for something else: attributes objective_<agent>, variables grasp_<...>.
-TAKEN = ("acceleration", "force", "limit", "error", "bar", "grasp", "schema", "table")
+TAKEN = ("acceleration", "force", "range", "tilt", "limit", "error", "bar", "grasp", "schema", "table")
 ELSEWHERE = "is the name of something else"
 
 
@@ -62,6 +62,8 @@ def _check_weights(scenario: ScenarioFields) -> None:
     weights |= {
         "acceleration_weight": objective.acceleration_weight,
         "force_weight": objective.force_weight,
+        "range_weight": objective.range_weight,
+        "tilt_weight": objective.tilt_weight,
     }
     if not any(weights.values()):
         raise InputError("objective", weights, "at least one weight must be above 0")

@@ -22,8 +22,8 @@ def as_schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:
     result["agents"] = agents
     if "table" in tables:
         result["object"] = tables["table"]
-    if isinstance(objective, Mapping):
-        result["objective"] = weights
+    if objective is None or isinstance(objective, Mapping):
+        result["objective"] = {"preset": "paper", **weights}
     task = result.get("task")
     if isinstance(task, Mapping):  # what files meant before there was a choice
         result["task"] = {"rest": "acceleration", **task}
