@@ -48,4 +48,4 @@ def _default(key: str, field: FieldInfo, agents: Mapping[str, str]) -> str:
     first, _, rest = key.partition(".")
     if by_preset := defaults_at(f"{agents.get(first, first)}.{rest}"):
         return "; default " + ", ".join(f"{value} ({preset})" for preset, value in by_preset.items())
-    return "" if field.is_required() or field.default is None else f"; default {field.default}"
+    return "" if field.is_required() or field.default in (None, ()) else f"; default {field.default}"

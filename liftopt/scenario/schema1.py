@@ -22,9 +22,12 @@ def as_schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:
     result["agents"] = agents
     if "table" in tables:
         result["object"] = tables["table"]
-    if objective is None or isinstance(objective, Mapping):
-        result["objective"] = {"preset": "paper", **weights}
-    task = result.get("task")
-    if isinstance(task, Mapping):  # what files meant before there was a choice
-        result["task"] = {"rest": "acceleration", **task}
+    if isinstance(objective, Mapping):
+        result["objective"] = weights
+    # What files meant before there was a choice.
+    meant = {"task": {"rest": "acceleration"}, "objective": {"preset": "paper"}, "limits": {"clearance": "off"}}
+    for section, entries in meant.items():
+        given = result.get(section, None if section == "task" else {})
+        if isinstance(given, Mapping):
+            result[section] = {**entries, **given}
     return result
