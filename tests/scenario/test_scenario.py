@@ -72,6 +72,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "table_yaw_deg": 10.0,
             "max_grasp_force": 200.0,
             "balance_tolerance": 0.0,
+            "clearance": 0.0,
         },
         "solver": {
             "name": "banded",
@@ -93,7 +94,7 @@ def test_shipped_scenarios_differ_in_the_reading_of_table_5_and_in_the_objective
     free = ["task.start.human_distance=free", "task.end.human_distance=free", "name=table5_free"]
     assert load_scenario("table5_free") == changed(*free)
     assert load_scenario("table5_free").task.start.human_distance is None
-    paper = changed("objective.preset=paper", "name=table5_paper")
+    paper = changed("objective.preset=paper", "limits.clearance=off", "name=table5_paper")
     assert load_scenario("table5_paper") == paper
     bare = {"objective.acceleration_weight": 0.0, "objective.force_weight": 0.0, "limits.balance_tolerance": 1.0}
     assert load_scenario("table5_bare") == paper.replace({**bare, "name": "table5_bare"})
@@ -309,7 +310,7 @@ def test_tables_of_allowed_entries_make_a_scenario_or_a_reason_and_toml_gives_it
         scenario = scenario_from_dict(data.draw(scenario_tables))
     except InputError as error:
         assert "\n" not in str(error)
-        assert error.key.split(".")[0] in {*DEFAULT.to_dict(), *DEFAULT.agents}
+        assert error.key.split(".")[0] in {*DEFAULT.to_dict(), *DEFAULT.agents, "obstacles"}
         return
     again = scenario_from_dict(toml(scenario.to_toml()))
     assert again == scenario

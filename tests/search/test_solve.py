@@ -18,7 +18,7 @@ from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
 
 CHEAP = ("solver.intervals=20", "solver.starts=1")
-PAPER = "objective.preset=paper"
+PAPER = ("objective.preset=paper", "limits.clearance=off")
 
 
 # Orientation values of an earlier prototype, N = 40, best of many starts; local minima and N = 20 take the margin.
@@ -28,7 +28,7 @@ PAPER = "objective.preset=paper"
 def test_objective_is_no_worse_than_a_fifth_above_the_prototypes(
     solved: Callable[..., Any], name: str, orientation: float
 ) -> None:
-    overrides = () if name == "table5_paper" else (PAPER, "solver.starts=2")
+    overrides = () if name == "table5_paper" else (*PAPER, "solver.starts=2")
     solution = solved(name, *overrides).solution
     assert solution.solved, solution.status
     assert 0.8 * orientation < solution.objective < 1.2 * orientation
@@ -99,7 +99,7 @@ def test_raising_and_lowering_are_the_same_motion_backwards(solved: Callable[...
 
 
 def test_free_distance_moves_where_the_torques_are_least(solved: Callable[..., Any]) -> None:
-    solution = solved("table5_free", PAPER, "solver.starts=2").solution
+    solution = solved("table5_free", *PAPER, "solver.starts=2").solution
     assert solution.solved, solution.status
     assert np.abs(solution.object.pose[[0, -1], 0] - (0.40 + 0.225)).max() > 0.02
     assert solution.objective < solved("table5_paper").solution.objective

@@ -22,11 +22,11 @@ from liftopt.scenario.model import Scenario, load_scenario
 GRAVITY = np.array([0.0, 0.0, -9.81])
 ARMS = {"human": ("human_arm.urdf", 10), "robot": ("sawyer.urdf", 7)}
 ONE_START = "solver.starts=1"
-PAPER = "objective.preset=paper"
+PAPER = ("objective.preset=paper", "limits.clearance=off")
 CASES = {
     "paper": ("table5_paper",),
-    "near": ("table5_near", PAPER, "solver.starts=2"),
-    "free": ("table5_free", PAPER, "solver.starts=2"),
+    "near": ("table5_near", *PAPER, "solver.starts=2"),
+    "free": ("table5_free", *PAPER, "solver.starts=2"),
     "fine": ("table5_paper", "solver.intervals=40", ONE_START),
     "coarse": ("table5_paper", "solver.intervals=10", ONE_START),
     "no human weight": ("table5_paper", "human.weight=0", ONE_START),
