@@ -26,8 +26,8 @@ def add_pareto_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "pareto",
         help="what the person gains where the robot works more: the front of their efforts",
-        description="Solve a scenario for many ratios of human to robot weight, 100 : 1 to 1 : 100, keep what no other "
-        "compromise beats in both efforts, and write pareto.csv, pareto.json and a plot.",
+        description="Solve a scenario for many ratios of human to robot weight, from 100 times to a hundredth of the "
+        "preset's, keep what no other compromise beats in both efforts, and write pareto.csv, pareto.json and a plot.",
         allow_abbrev=False,
     )
     parser.add_argument(
@@ -127,7 +127,7 @@ def _row(front: Front, point: Point) -> dict[str, Any]:
     return {
         f"{one}_weight": point.weights[0],
         f"{other}_weight": point.weights[1],
-        **{f"{name}_effort_N2m2s": efforts[name] for name in everybody},
+        **{f"{name}_effort_{front.effort.key}": efforts[name] for name in everybody},
         f"{one}_load_share": point.share,
         **{f"{name}_largest_share_of_limit": used[name] for name in everybody},
         "objective": float(candidate.result.objective),
@@ -140,7 +140,7 @@ def table(front: Front, values: dict[str, Any]) -> str:
     """Return the table that the command prints, of a front and what ``front_dict`` returned of it."""
     from liftopt.studies.pareto import ratio_text, who_of
 
-    one, other = front.between
+    (one, other), effort = front.between, front.effort
     everybody = (one, other, *(name for name in front.scenario.agents if name not in front.between))
     labels = {name: who_of(front, name).label for name in everybody}
     ratio, first = f"weights {labels[one]} : {labels[other]}", who_of(front, one).called
@@ -148,18 +148,18 @@ def table(front: Front, values: dict[str, Any]) -> str:
     wide, narrow = ({name: max(least, len(labels[name])) for name in everybody} for least in (10, 7))
     used = sum(narrow.values()) + len(narrow) - 1
     lines = [
-        f"Effort is the integral of squared joint torques; load is {first}'s mean part of the object's weight, most",
-        "used the largest part of a joint's torque limit.",
+        f"Effort is the integral of {effort.of};",
+        f"load is {first}'s mean part of the object's weight, most used the largest part of a joint's torque limit.",
         *_traded(front),
         "",
         f"{ratio:>{left}} " + " ".join(f"{labels[name]:>{wide[name]}}" for name in everybody)
         + f" {'load':>6} {'most used':>{used}}",
-        f"{'':>{left}} " + " ".join(f"{'[N2 m2 s]':>{wide[name]}}" for name in everybody)
+        f"{'':>{left}} " + " ".join(f"{f'[{effort.unit}]':>{wide[name]}}" for name in everybody)
         + f" {'[%]':>6} " + " ".join(f"{labels[name]:>{narrow[name]}}" for name in everybody),
     ]  # fmt: skip
     for row in values["points"]:
         weights = ratio_text((row[f"{one}_weight"], row[f"{other}_weight"]))
-        efforts = " ".join(f"{row[f'{name}_effort_N2m2s']:{wide[name]}.1f}" for name in everybody)
+        efforts = " ".join(f"{row[f'{name}_effort_{effort.key}']:{wide[name]}.4g}" for name in everybody)
         most = [f"{100 * row[f'{name}_largest_share_of_limit']:.0f}%" for name in everybody]
         lines.append(
             f"{weights:>{left}} {efforts} {100 * row[f'{one}_load_share']:6.1f} "

@@ -103,6 +103,7 @@ def _write_plot(study: SensitivityStudy, path: Path) -> None:
 def table(study: SensitivityStudy) -> str:
     """Return the table that the command prints."""
     from liftopt.assessment.who import who_is
+    from liftopt.studies.pareto import EFFORTS
     from liftopt.studies.sensitivity import bearers
 
     agents = study.candidate.problem.team.agents
@@ -112,8 +113,9 @@ def table(study: SensitivityStudy) -> str:
     borne = [f"{100 * now[f'share {name}']:.1f} %" for name in bearing]
     others = [f"{told[name].called} {share}" for name, share in zip(bearing[1:], borne[1:], strict=True)]
     limits = [f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest]
+    unit = EFFORTS[study.candidate.scenario.objective.preset].unit
     lines = [
-        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} N2 m2 s; "
+        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} {unit}; "
         f"{told[bearing[0]].called} bears",
         f"{', '.join([borne[0], *others])}. Nearest to their limits: {' and '.join(limits)}.",
         "",

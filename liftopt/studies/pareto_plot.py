@@ -34,8 +34,8 @@ def pareto_figure(front: Front) -> Figure:
             *point.efforts, color=ORANGE, linestyle="none", marker="o", markersize=8, zorder=4,
             label="weights of the scenario",
         )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel=f"effort of {one.called}, ∫ Σ τ² dt [N² m² s]")
-    axes.set_ylabel(f"effort of {other.called}, ∫ Σ τ² dt [N² m² s]")
+    axes.set(xscale="log", yscale="log", xlabel=f"effort of {one.called}, {front.effort.formula}")
+    axes.set_ylabel(f"effort of {other.called}, {front.effort.formula}")
     axes.set_title(
         f"{front.scenario.name}: who works more. At the points: weights {one.label} : {other.label}, load {one.called} "
         "bears"

@@ -11,12 +11,12 @@ import pytest
 from liftopt.scenario.build import agents_of
 from liftopt.solution.solution import Solution
 
-NATURAL = ("table5", "objective.preset=natural", "solver.intervals=12")
+NATURAL = ("table5", "solver.intervals=12")
 
 
 @pytest.fixture(scope="module")
 def natural(solved: Callable[..., Any]) -> Solution:
-    """Return Table 5 with the preset natural."""
+    """Return the default lift, which is natural, on a coarse mesh."""
     solution: Solution = solved(*NATURAL).solution
     return solution
 
@@ -48,7 +48,7 @@ def test_the_person_holds_more_naturally_than_with_the_papers_weights(
     natural: Solution, solved: Callable[..., Any]
 ) -> None:
     """The cost of joint angles, in the mean over time."""
-    paper = solved("table5", "solver.intervals=12").solution
+    paper = solved("table5_paper", "solver.intervals=12").solution
     comfort = agents_of(natural.scenario)[0].comfort
     assert comfort is not None
     costs = [comfort.cost(one["human"].q[:, one["human"].moving]).mean() for one in (natural, paper)]
