@@ -25,6 +25,7 @@ from .scenario.box import Box as Box
 from .scenario.file import shipped_scenarios as shipped_scenarios
 from .scenario.model import Scenario as Scenario
 from .scenario.model import load_scenario as load_scenario
+from .scenario.obstacles import Obstacle as Obstacle
 from .scenario.settings import Limits as Limits
 from .scenario.settings import Objective as Objective
 from .scenario.settings import Refine as Refine

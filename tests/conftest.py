@@ -61,6 +61,12 @@ def scenario_tables() -> Any:
 
 
 @pytest.fixture(scope="session")
+def coal_distance() -> Any:
+    """Return the module that measures distances of solids by coal."""
+    return _module("coal_distance")
+
+
+@pytest.fixture(scope="session")
 def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
     """Return a function that solves a shipped scenario with overrides, each once a session."""
     from liftopt.search.solve import solve

@@ -12,6 +12,7 @@ from liftopt.files.entries import choices_of, extra_of, kinds_of, range_of
 from liftopt.files.section import sections_in
 from liftopt.scenario.agents import KINDS
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.obstacles import Obstacle
 
 TEAM = {"human": "person", "robot": "robot"}
 
@@ -36,6 +37,10 @@ def _may_be_left_out(field: FieldInfo) -> bool:
 
 
 def _entry(name: str, field: FieldInfo) -> st.SearchStrategy[Any]:
+    if name == "obstacles":
+        return st.lists(section(Obstacle), max_size=2)
+    if name == "box" or (name == "position" and field.is_required()):  # of an obstacle
+        return st.lists(st.floats(0.001, 10.0), min_size=3, max_size=3)
     if sections := sections_in(field):
         return st.one_of([section(inside) for inside in sections])
     if choices := choices_of(field):

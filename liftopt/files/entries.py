@@ -19,7 +19,9 @@ from liftopt.files.suggestions import did_you_mean, nearest
 TRUTH = {"true": "true", "yes": "true", "on": "true", "1": "true"} | {
     "false": "false", "no": "false", "off": "false", "0": "false",
 }  # fmt: skip
-FREE = "free"  # stands in a file for a number that is left to the solver; None in Python
+# Words that stand in a file for a number; None in Python.
+FREE = "free"  # left to the solver
+OFF = "off"  # not asked for
 
 
 def number(about: str, unit: str, low: float, high: float, *, open_low: bool = False) -> Any:
@@ -30,9 +32,9 @@ def number(about: str, unit: str, low: float, high: float, *, open_low: bool = F
     return Field(description=about, ge=low, le=high, allow_inf_nan=False, json_schema_extra=extra)
 
 
-def free_number(about: str, unit: str, low: float, high: float) -> Any:
-    """Return the field of a number for which ``"free"`` may stand in a file, and None in Python."""
-    extra: Any = {"unit": unit, "word": FREE}
+def free_number(about: str, unit: str, low: float, high: float, word: str = FREE) -> Any:
+    """Return the field of a number for which a word may stand in a file, and None in Python."""
+    extra: Any = {"unit": unit, "word": word}
     return Field(description=about, ge=low, le=high, allow_inf_nan=False, json_schema_extra=extra)
 
 
@@ -52,7 +54,11 @@ def _freed(value: object) -> object:
     return None if value == FREE else value
 
 
-OrFree = BeforeValidator(_freed)  # beside ``free_number``
+def _off(value: object) -> object:
+    return None if value == OFF else value
+
+
+OrFree, OrOff = BeforeValidator(_freed), BeforeValidator(_off)  # beside ``free_number``
 
 
 def extra_of(field: FieldInfo) -> dict[str, Any]:

@@ -102,7 +102,7 @@ def refusal_at(of: type[BaseModel], place: Place, kind: str, value: object, pref
         return InputError(key, value, "unknown key" + offer)
     # Below a table of the user's names the field that holds it is all there is to tell.
     field = next(filter(None, (field_at(of, keys[:depth]) for depth in range(len(keys), 0, -1))))
-    if kind == "missing":
+    if kind == "missing" and isinstance(place[-1], str):  # else a list is too short
         return InputError(key, NO_VALUE, f"is missing; must be {allowed(field)} ({about(field)})")
     return InputError(key, value, f"must be {allowed(field)} ({about(field)}){meant_by(field, value)}")
 
@@ -156,4 +156,4 @@ def _plain(value: Any) -> Any:
         return value.plain()
     if isinstance(value, Mapping):
         return {name: _plain(inner) for name, inner in value.items()} or None
-    return list(value) if isinstance(value, tuple) else value
+    return [_plain(inner) for inner in value] or None if isinstance(value, tuple) else value

@@ -7,6 +7,7 @@ from collections import Counter
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import FREE
 from liftopt.files.suggestions import did_you_mean, nearest
+from liftopt.multibody.solids import FLOOR
 from liftopt.scenario.agents import NAME, NAMES
 from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lead, stand_of
@@ -27,6 +28,7 @@ def check(scenario: ScenarioFields) -> None:
     _check_weights(scenario)
     for name in scenario.agents:
         stand_of(scenario, name)
+    _check_obstacles(scenario)
     _check_grasps(scenario)
     for end in ("start", "end"):
         _check_place(scenario, end)
@@ -46,6 +48,14 @@ def _check_names(scenario: ScenarioFields) -> None:
         if files[file] > 1 and name == file.removesuffix(".urdf"):
             key = "agents" if name in scenario.agents else "object.name"
             raise InputError(key, name, f"the file {file} is another one's; give another name")
+
+
+def _check_obstacles(scenario: ScenarioFields) -> None:
+    seen = {*scenario.agents, scenario.object.name, FLOOR.owner}
+    for obstacle in scenario.obstacles:
+        if obstacle.name in seen:
+            raise InputError("obstacles.name", obstacle.name, f"{ELSEWHERE}; give the obstacle another one")
+        seen.add(str(obstacle.name))
 
 
 def _check_grasps(scenario: ScenarioFields) -> None:

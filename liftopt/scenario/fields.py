@@ -12,6 +12,7 @@ from liftopt.files.entries import entry, number
 from liftopt.files.section import Section
 from liftopt.scenario.agents import Agent, Agents, Kind, Person, Robot
 from liftopt.scenario.box import Box
+from liftopt.scenario.obstacles import Obstacles
 from liftopt.scenario.settings import Limits, Objective, Refine, Solver
 from liftopt.scenario.task import Lift
 
@@ -33,6 +34,10 @@ class ScenarioFields(Section):
     agents: Annotated[Agents, entry("who lifts", "a section with a table [agents.NAME] for everybody who lifts")]
     object: Box
     task: Lift
+    obstacles: Annotated[
+        Obstacles,
+        entry("what stands in the way", "tables [[obstacles]] of box, position, yaw_deg and name"),
+    ] = ()
     objective: Objective = Objective()
     limits: Limits = Limits()
     solver: Solver = Solver()

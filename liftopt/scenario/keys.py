@@ -1,7 +1,7 @@
 """Dotted keys: ``human.stature``, ``object.mass``, ``task.end.height``; the one place where they are taken apart.
 
 An agent is addressed by its name, ``human.stature`` for ``agents.human.stature``; ``table.*`` and the object's own name
-stand for ``object.*``.
+stand for ``object.*``; an obstacle is addressed by its name, ``obstacles.shelf.position``.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from typing import Any
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.section import Section
 from liftopt.files.toml_text import toml
+from liftopt.scenario.obstacles import name_of
 
-AGENTS, OBJECT, TABLE = "agents", "object", "table"
+AGENTS, OBJECT, TABLE, OBSTACLES = "agents", "object", "table", "obstacles"
 EXAMPLE = "object.mass=3"
 SEVERAL = re.compile(r"^[^\[{\"'\n]*[,;\s]\s*[A-Za-z]\w*\.[\w.]*\w\s*=")  # a second key in what should be one value
 Path = tuple[str, ...]
@@ -47,8 +48,14 @@ def set_entry(tables: dict[str, Any], key: str, value: Any) -> None:
         InputError: the key leads into a value.
     """
     path = path_of(key, tables.get(AGENTS), _name_of_object(tables))
-    inside = tables
-    for depth, part in enumerate(path[:-1], start=1):
+    inside, outer = tables, path[:-1]
+    if len(path) > 2 and path[0] == OBSTACLES:
+        listed = tables.get(OBSTACLES)
+        tables[OBSTACLES] = [dict(item) for item in listed] if isinstance(listed, list) else []
+        inside, outer = _by_name(tables[OBSTACLES]), path[1:-1]
+        if path[1] not in inside:
+            raise InputError(shown(path), value, f"there is no obstacle {path[1]!r}; {_known(inside)}")
+    for depth, part in enumerate(outer, start=len(path) - len(outer)):
         inner = inside.get(part, {})
         if not isinstance(inner, dict):
             raise InputError(shown(path), NO_VALUE, f"{shown(path[:depth])} is a value, not a section")
@@ -81,6 +88,7 @@ def value_at(scenario: Any, path: Sequence[str]) -> Any:
     """
     value = scenario
     for part in path:
+        value = _by_name(value) if isinstance(value, tuple) and path[0] == OBSTACLES else value
         known = value if isinstance(value, Mapping) else getattr(type(value), "model_fields", {})
         if part not in known:
             raise InputError(shown(path), NO_VALUE, "is no entry of the scenario")
@@ -93,6 +101,8 @@ def leaves(tables: Mapping[str, Any], path: Path = ()) -> Iterator[tuple[str, An
     for name, value in tables.items():
         if isinstance(value, Mapping):
             yield from leaves(value, (*path, name))
+        elif name == OBSTACLES:
+            yield from leaves(_by_name(value), (*path, name))
         else:
             yield shown((*path, name)), value
 
@@ -110,6 +120,15 @@ def refuse_contradictions(overrides: Iterable[str]) -> None:
         key = shown(path_of(key, None))
         if known.setdefault(key, text) != text:
             raise InputError("--set", NO_VALUE, f"{key} is given twice, as {known[key]} and as {text}; give it once")
+
+
+def _by_name(obstacles: Sequence[Any]) -> dict[str, Any]:
+    """Return the obstacles of a list by their names, given or by default."""
+    return {name_of(obstacles, k): obstacle for k, obstacle in enumerate(obstacles)}
+
+
+def _known(obstacles: Mapping[str, Any]) -> str:
+    return f"there are {', '.join(obstacles)}" if obstacles else "the scenario has none"
 
 
 def _change(text: str) -> tuple[str, Any]:

@@ -39,5 +39,5 @@ def describe(of: type[BaseModel], agents: Mapping[str, str]) -> Iterator[tuple[s
     """Yield the dotted key of every entry and what it holds: meaning, range and default; arguments as ``fields_of``."""
     for key, field in fields_of(of, agents):
         if not sections_in(field):
-            has_default = not field.is_required() and field.default is not None
+            has_default = not field.is_required() and field.default not in (None, ())
             yield key, f"{about(field)}: {allowed(field)}" + (f"; default {field.default}" if has_default else "")

@@ -11,9 +11,10 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.section import refusal_at, shown_key
 from liftopt.files.suggestions import did_you_mean
 from liftopt.scenario.agents import KINDS
-from liftopt.scenario.keys import AGENTS
+from liftopt.scenario.keys import AGENTS, OBSTACLES
 from liftopt.scenario.listing import DEFAULT_TEAM, fields_of
 from liftopt.scenario.meant import nearest_keys
+from liftopt.scenario.obstacles import Obstacle, name_of
 from liftopt.scenario.task import PLACED, PLACES
 
 ENDS = (["task", "start"], ["task", "end"])
@@ -39,6 +40,9 @@ def refusal(of: type[BaseModel], fault: Mapping[str, Any], values: Mapping[str, 
         return InputError(
             place[0], NO_VALUE, f"unknown key; in schema 2 it is a table of an agent, [agents.{place[0]}]"
         )
+    if place[0] == OBSTACLES and len(place) > 2:
+        name = name_of(values.get(OBSTACLES), place[1])
+        return refusal_at(Obstacle, tuple(place[2:]), kind, value, f"{OBSTACLES}.{name}.")
     if kind == "extra_forbidden":
         return _unknown(of, _without_tags(place), value, _kinds_in(values.get(AGENTS)))
     if place[:2] in ENDS and len(place) > 2:

@@ -24,7 +24,9 @@ def as_schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:
         result["object"] = tables["table"]
     if isinstance(objective, Mapping):
         result["objective"] = weights
-    task = result.get("task")
-    if isinstance(task, Mapping):  # what files meant before there was a choice
-        result["task"] = {"rest": "acceleration", **task}
+    # What files meant before there was a choice.
+    for section, meant in (("task", {"rest": "acceleration"}), ("limits", {"clearance": "off"})):
+        given = result.get(section, {} if section == "limits" else None)
+        if isinstance(given, Mapping):
+            result[section] = {**meant, **given}
     return result

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from liftopt.files.entries import entry, number, whole
+from liftopt.files.entries import OFF, OrOff, entry, free_number, number, whole
 from liftopt.files.section import Section
 
 
@@ -24,6 +24,9 @@ class Limits(Section):
     table_yaw_deg: Annotated[float, number("largest yaw of the object", "deg", 0.0, 60.0)] = 10.0
     max_grasp_force: Annotated[float, number("largest grasp force", "N", 0.0, 10_000.0, open_low=True)] = 200.0
     balance_tolerance: Annotated[float, number("slack in the object's balance", "N, Nm", 0.0, 100.0)] = 0.0
+    clearance: Annotated[
+        float | None, free_number("least distance between bodies that do not touch", "m", 0.0, 1.0, OFF), OrOff
+    ] = 0.0
 
 
 class Solver(Section):

@@ -110,7 +110,7 @@ def test_a_key_that_leads_nowhere_is_told(key: str, said: str) -> None:
 def test_entries_are_all_values_by_the_keys_that_help_lists() -> None:
     found, listed = DEFAULT.entries(), dict(DEFAULT.describe())
     assert set(found) <= set(listed)
-    unset = {"human.position", "human.heading_deg", "robot.base.x", "robot.base.z", "object.grasps"}
+    unset = {"human.position", "human.heading_deg", "robot.base.x", "robot.base.z", "object.grasps", "obstacles"}
     assert set(listed) - set(found) - unset == {f"task.{end}.{axis}" for end in ("start", "end") for axis in "xyz"}
     assert (found["human.stature"], found["object.mass"], found["schema"]) == (1.75, 2.0, 2)
 

@@ -72,6 +72,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "table_yaw_deg": 10.0,
             "max_grasp_force": 200.0,
             "balance_tolerance": 0.0,
+            "clearance": 0.0,
         },
         "solver": {
             "name": "banded",
@@ -302,7 +303,7 @@ def test_tables_of_allowed_entries_make_a_scenario_or_a_reason_and_toml_gives_it
         scenario = scenario_from_dict(data.draw(scenario_tables))
     except InputError as error:
         assert "\n" not in str(error)
-        assert error.key.split(".")[0] in {*DEFAULT.to_dict(), *DEFAULT.agents}
+        assert error.key.split(".")[0] in {*DEFAULT.to_dict(), *DEFAULT.agents, "obstacles"}
         return
     again = scenario_from_dict(toml(scenario.to_toml()))
     assert again == scenario

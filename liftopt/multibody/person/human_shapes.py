@@ -1,4 +1,8 @@
-"""What the subject looks like: primitive shapes sized from the body dimensions."""
+"""The subject's shapes, drawn and collided with: primitives sized from the body dimensions.
+
+Breadths, depths and girths are ANSUR II's (``anthropometry``). Soft tissue gives way: trunk and hips are no
+broader than leaves room for arms that hang straight down from the shoulder joints.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +26,11 @@ SKIN = Colour("skin", (0.87, 0.68, 0.55, 1.0))
 SHIRT = Colour("shirt", (0.20, 0.42, 0.66, 1.0))
 TROUSERS = Colour("trousers", (0.25, 0.27, 0.32, 1.0))
 SHOES = Colour("shoes", (0.12, 0.12, 0.13, 1.0))
-HAND_THICKNESS = 0.03  # of a flat hand [m]; drawn only
+SIDES, ENDS = ((LEFT, "left"), (RIGHT, "right")), ((1.0, "front"), (-1.0, "back"))
+HAND_THICKNESS = 0.03  # of a flat hand [m]; chosen for this model
+# Girths are maxima; a segment of one radius is a little thinner. Shares of the radius, chosen for this model.
+UPPER_ARM, FOREARM, THIGH, SHANK = 0.85, 0.75, 0.8, 0.85
+BESIDE_ARM = 0.004  # between the trunk and a hanging arm [m]; chosen for this model
 
 
 def human_shapes(subject: Subject) -> dict[str, tuple[Shape, ...]]:
@@ -41,15 +49,17 @@ def _lower_body(subject: Subject) -> tuple[Shape, ...]:
     at = landmarks(subject)
     breadth = dimension(subject, "hipbreadth")
     foot = np.array([dimension(subject, "footlength"), dimension(subject, "footbreadthhorizontal"), at.ankle])
-    pelvis_size = (dimension(subject, "buttockdepth") * 0.85, breadth * 0.95, at.omphalion - at.hip)
-    shapes: list[Shape] = [box_at("pelvis", TROUSERS, np.array([0.0, 0.0, (at.omphalion + at.hip) / 2.0]), pelvis_size)]
-    for side, name in ((LEFT, "left"), (RIGHT, "right")):
-        y = side * HIP_JOINT_SPREAD * breadth
+    depth = 0.85 * dimension(subject, "buttockdepth")
+    # It ends at the base of the spine, above which the trunk moves.
+    shapes = _rounded("hip", TROUSERS, 0.95 * breadth, depth, at.hip, at.omphalion, _room(subject))
+    thigh = THIGH * girth_radius(subject, "thighcircumference")
+    spread = min(HIP_JOINT_SPREAD * breadth, _room(subject) - thigh)
+    for side, name in SIDES:
+        y = side * spread
         hip, knee, ankle = (np.array([0.0, y, z]) for z in (at.hip, at.knee, at.ankle))
-        # The girths are maxima; a segment of one radius looks right a little below them.
         shapes += [
-            Capsule(f"{name}_thigh", TROUSERS, hip, knee, 0.8 * girth_radius(subject, "thighcircumference")),
-            Capsule(f"{name}_shank", TROUSERS, knee, ankle, 0.85 * girth_radius(subject, "calfcircumference")),
+            Capsule(f"{name}_thigh", TROUSERS, hip, knee, thigh),
+            Capsule(f"{name}_shank", TROUSERS, knee, ankle, SHANK * girth_radius(subject, "calfcircumference")),
             box_at(
                 f"{name}_foot",
                 SHOES,
@@ -61,23 +71,54 @@ def _lower_body(subject: Subject) -> tuple[Shape, ...]:
 
 
 def _trunk(subject: Subject) -> tuple[Shape, ...]:
-    at, lengths = landmarks(subject), link_lengths(subject)
+    at, lengths, room = landmarks(subject), link_lengths(subject), _room(subject)
     shoulder = lengths.l1 + lengths.l2
-    upper_arm = girth_radius(subject, "bicepscircumferenceflexed")
-    waist = (dimension(subject, "waistdepth"), dimension(subject, "waistbreadth"), at.xiphion - at.omphalion)
-    chest = (dimension(subject, "chestdepth"), dimension(subject, "chestbreadth"), shoulder - at.xiphion)
-    across = np.array([0.0, lengths.l3 - 0.5 * upper_arm, 0.0])
+    girdle = girth_radius(subject, "bicepscircumferenceflexed")
+    waist, chest = (
+        (dimension(subject, f"{part}breadth"), dimension(subject, f"{part}depth")) for part in ("waist", "chest")
+    )
+    across = np.array([0.0, room - girdle, 0.0])
     neck = girth_radius(subject, "neckcircumference")
     head = dimension(subject, "headlength") / 2.0
     head_length = SEGMENTS[subject.sex]["head"].length * subject.stature
     brow, chin = at.vertex - head, at.vertex - max(head_length, 2.05 * head) + 0.8 * head
     return (
-        box_at("abdomen", SHIRT, np.array([0.0, 0.0, (at.omphalion + at.xiphion) / 2.0]), waist),
-        box_at("chest", SHIRT, np.array([0.0, 0.0, (at.xiphion + shoulder) / 2.0]), chest),
-        Capsule("shoulders", SHIRT, _axis(shoulder) - across, _axis(shoulder) + across, upper_arm),
+        *_rounded("abdomen", SHIRT, *waist, at.omphalion, at.xiphion + waist[1] / 2.0, room),
+        *_rounded("chest", SHIRT, *chest, at.xiphion, shoulder + girdle, room),
+        Capsule("shoulders", SHIRT, _axis(shoulder) - across, _axis(shoulder) + across, girdle),
         Capsule("neck", SKIN, _axis(shoulder), _axis(chin), 0.95 * neck),
         Capsule("head", SKIN, _axis(chin), _axis(brow), 0.9 * head),
     )
+
+
+def _rounded(
+    name: str, colour: Colour, breadth: float, depth: float, low: float, high: float, room: float
+) -> list[Shape]:
+    """Return a part of the trunk as two upright capsules: side by side, or one behind the other where it is deeper.
+
+    Args:
+        name: of the part.
+        colour: its material.
+        breadth: of the part [m].
+        depth: likewise.
+        low: height of the lower ends of the axes [m].
+        high: height of the top [m].
+        room: half of what it is broad at most [m].
+    """
+    half = np.array([depth / 2.0, min(breadth / 2.0, room)])
+    radius = float(half.min())
+    sides = SIDES if half[0] < half[1] else ENDS
+    return [
+        Capsule(f"{word}_{name}", colour, np.array([*aside, low]), np.array([*aside, high - radius]), radius)
+        for sign, word in sides
+        for aside in [sign * (half - radius)]
+    ]
+
+
+def _room(subject: Subject) -> float:
+    """Return how far to the side [m] there is room beside an arm that hangs from the shoulder joint."""
+    arm = max(UPPER_ARM * girth_radius(subject, "bicepscircumferenceflexed"), dimension(subject, "handbreadth") / 2.0)
+    return link_lengths(subject).l3 - arm - BESIDE_ARM
 
 
 def _arm(subject: Subject, side: float, name: str) -> tuple[Capsule, Capsule, Box]:
@@ -87,10 +128,13 @@ def _arm(subject: Subject, side: float, name: str) -> tuple[Capsule, Capsule, Bo
     wrist = elbow - _axis(lengths.l5)
     upper, lower = (girth_radius(subject, f"{part}circumferenceflexed") for part in ("biceps", "forearm"))
     middle = wrist - _axis(lengths.l6)  # third metacarpale: about the middle of the hand
-    size = (HAND_THICKNESS, dimension(subject, "handbreadth"), 2.0 * lengths.l6)
+    breadth = dimension(subject, "handbreadth")
+    # The right palm faces ahead, as where its joints are zero; the left arm rests, its palm to the thigh.
+    across = (HAND_THICKNESS, breadth) if side == RIGHT else (breadth, HAND_THICKNESS)
+    size = (*across, 2.0 * lengths.l6)
     return (
-        Capsule(f"{name}_upper_arm", SHIRT, shoulder, elbow, 0.85 * upper),
-        Capsule(f"{name}_forearm", SKIN, elbow, wrist, 0.75 * lower),
+        Capsule(f"{name}_upper_arm", SHIRT, shoulder, elbow, UPPER_ARM * upper),
+        Capsule(f"{name}_forearm", SKIN, elbow, wrist, FOREARM * lower),
         box_at(f"{name}_hand", SKIN, middle, size),
     )
 

@@ -23,12 +23,12 @@ def link_shapes() -> list[tuple[Shape, ...]]:
         # Every next joint lies off along one axis and then along another: a bent tube of two capsules.
         tip = np.array(JOINTS[index + 1].xyz)
         corner = np.array([0.0, 0.0, tip[2]])
-        tube = [Capsule(f"l{index}_tube", RED, np.zeros(3), corner, radius)]
+        tube = [Capsule(f"link_{index}_tube", RED, np.zeros(3), corner, radius)]
         if np.linalg.norm(tip - corner) > radius / 2.0:
-            tube.append(Capsule(f"l{index}_joint", GREY, corner, tip, radius))
+            tube.append(Capsule(f"link_{index}_joint", GREY, corner, tip, radius))
         shapes.append(tuple(tube) + (_head() if index == 0 else ()))
     flange = np.array(FLANGE_IN_LAST_LINK)
-    shapes.append((Cylinder("l6_flange", BLACK, np.array([0.0, 0.0, -0.03]), flange, 0.04),))
+    shapes.append((Cylinder("flange", BLACK, np.array([0.0, 0.0, -0.03]), flange, 0.04),))
     return shapes
 
 

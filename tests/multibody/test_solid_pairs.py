@@ -1,0 +1,92 @@
+"""Which solids must keep apart: oracles are the rules, and coal's distances of people who stand at rest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from liftopt.multibody.person.human import human_agent
+from liftopt.multibody.person.subject import Sex, Subject
+from liftopt.multibody.solid_pairs import grasping_joint, solid_pairs
+from liftopt.multibody.solids import solids_of, placed_box
+from liftopt.scenario.build import agents_of, object_of
+from liftopt.scenario.model import load_scenario
+
+TEAMS = Path(__file__).parents[1] / "scenario" / "teams"
+TABLE5 = load_scenario()
+AGENTS = agents_of(TABLE5)
+SHELF = placed_box("shelf", (0.4, 1.2, 0.1), (0.6, 0.2, 0.5), 0.0)
+PAIRS = solid_pairs(AGENTS, object_of(TABLE5), (SHELF,))
+
+
+def _told(*names: str) -> set[str]:
+    """Return the pairs, as sets of two, in which a solid of one of these names is."""
+    return {pair.told for pair in PAIRS if {pair.one.told, pair.other.told} & set(names)}
+
+
+def test_what_grasps_is_exempt_against_the_object_and_only_against_it() -> None:
+    for hand in ("right hand of human", "gripper of robot", "flange of robot"):
+        assert f"{hand} and table" not in _told(hand)
+        assert {f"{hand} and shelf", f"{hand} and floor"} <= _told(hand)
+    assert "right forearm of human and table" in _told("table")
+    assert {"table and shelf", "table and floor", "head of human and table"} <= _told("table")
+
+
+def test_the_floor_is_there_for_the_object_and_for_hands() -> None:
+    assert _told("floor") == {
+        "table and floor", "right hand of human and floor", "gripper of robot and floor", "flange of robot and floor",
+    }  # fmt: skip
+
+
+def test_person_and_robot_and_two_people_keep_apart_everywhere() -> None:
+    human, robot = (len(solids_of(agent)) for agent in AGENTS)
+    assert sum(pair.kind == "person-robot" for pair in PAIRS) == human * robot
+    team = load_scenario(TEAMS / "two_people.toml")
+    people = agents_of(team)
+    pairs = solid_pairs(people, object_of(team))
+    assert sum(pair.kind == "person-person" for pair in pairs) == human**2
+    assert {pair.kind for pair in pairs} == {"person", "person-person", "person-object", "person-floor", "object-floor"}
+
+
+def test_neighbours_at_a_joint_are_exempt_within_a_body() -> None:
+    own = {pair.told for pair in PAIRS if pair.kind == "person"}
+    for one, other in (
+        ("shoulders", "right upper arm"), ("right upper arm", "right forearm"), ("right forearm", "right hand"),
+        ("left hip", "left abdomen"), ("left hip", "left hand"),
+    ):  # fmt: skip
+        assert f"{one} of human and {other} of human" not in own
+    for one, other in (
+        ("right abdomen", "right upper arm"), ("right chest", "right upper arm"), ("head", "right hand"),
+        ("left thigh", "right forearm"), ("left forearm", "right forearm"), ("right upper arm", "right hand"),
+    ):  # fmt: skip
+        assert f"{one} of human and {other} of human" in own
+    robots = {pair.told for pair in PAIRS if pair.kind == "robot"}
+    assert "link 1 joint of robot and link 2 tube of robot" not in robots
+    assert {"link 4 tube of robot and gripper of robot", "head screen of robot and gripper of robot"} <= robots
+
+
+@pytest.mark.parametrize("sex", ["male", "female"])
+@pytest.mark.parametrize("stature", [1.5, 1.75, 1.95])
+@pytest.mark.parametrize("body_mass_index", [17.0, 24.5, 35.0])
+def test_an_arm_that_hangs_is_in_nothing(
+    sex: Sex, stature: float, body_mass_index: float, coal_distance: ModuleType
+) -> None:
+    agent = human_agent(Subject(stature, body_mass_index * stature**2, sex))
+    pairs = solid_pairs([agent], object_of(TABLE5))
+    for q in (np.zeros(10), np.radians([0, 0, 0, 0, 0, 0, 0, -80, 0, 0]), agent.posture):
+        nearest = coal_distance.own_distances(agent, pairs, q)
+        assert min(nearest.values()) > 0.0, min(nearest, key=lambda pair: nearest[pair])
+
+
+def test_a_robot_in_its_posture_is_clear_of_itself(coal_distance: ModuleType) -> None:
+    robot = AGENTS[1]
+    assert min(coal_distance.own_distances(robot, PAIRS, robot.posture).values()) > 0.03
+
+
+def test_the_grasp_frame_tells_what_grasps() -> None:
+    assert [solid.name for agent in AGENTS for solid in solids_of(agent) if solid.joint == grasping_joint(agent)] == [
+        "right hand", "flange", "gripper",
+    ]  # fmt: skip
