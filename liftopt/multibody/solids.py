@@ -86,9 +86,7 @@ def solids_of_object(lifted: LiftedObject) -> tuple[Solid, ...]:
     return tuple(replace(solid, name="") for solid in found) if len(found) == 1 else found
 
 
-def placed_box(
-    name: str, size: tuple[float, float, float], position: tuple[float, float, float], yaw: float
-) -> Solid:
+def placed_box(name: str, size: tuple[float, float, float], position: tuple[float, float, float], yaw: float) -> Solid:
     """Return a box that stands in the world.
 
     Args:

@@ -11,7 +11,7 @@ import pytest
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.subject import Sex, Subject
 from liftopt.multibody.solid_pairs import grasping_joint, solid_pairs
-from liftopt.multibody.solids import solids_of, placed_box
+from liftopt.multibody.solids import placed_box, solids_of
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 

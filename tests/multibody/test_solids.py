@@ -13,7 +13,7 @@ import pytest
 
 from liftopt.errors import ModelError
 from liftopt.multibody.agent import Agent
-from liftopt.multibody.solids import FLOOR, Solid, solids_of, solids_of_object, placed_box
+from liftopt.multibody.solids import FLOOR, Solid, placed_box, solids_of, solids_of_object
 from liftopt.scenario.build import agents_of, object_of, obstacles_of
 from liftopt.scenario.model import load_scenario
 
