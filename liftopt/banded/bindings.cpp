@@ -85,11 +85,18 @@ std::shared_ptr<banded::KernelNlp> kernel_nlp(
     int lanes, const Doubles& weights, const Doubles& basis, const Integers& control, const Integers& force,
     const std::vector<py::dict>& parts,
     const std::vector<std::tuple<std::vector<std::tuple<int, int, double>>, Integers>>& rows,
-    const SparseArrays& linear) {
+    const SparseArrays& linear, const std::vector<std::tuple<std::vector<std::tuple<int, int>>, Integers>>& varied) {
   std::vector<banded::KernelPart> all;
   for (const py::dict& part : parts) all.push_back(part_of(part));
   std::vector<banded::KnotRow> knot_rows;
   for (const auto& row : rows) knot_rows.push_back(row_of(row));
+  int n_varied = 0;
+  for (const auto& [terms, at] : varied) {
+    banded::KnotRow row;
+    for (const auto& [part, output] : terms) row.terms.push_back({part, output, 0.0, n_varied++});
+    row.row = integers_of(at);
+    knot_rows.push_back(row);
+  }
   banded::Knots knots(lanes, vector_of(weights), vector_of(basis), integers_of(control), integers_of(force));
   return std::make_shared<banded::KernelNlp>(std::move(knots), std::move(all), std::move(knot_rows),
                                              sparse_of(linear));
@@ -189,7 +196,8 @@ PYBIND11_MODULE(_liftopt_banded, module) {
           py::arg("x"), "The largest term of each constraint row's derivatives at x.");
   py::class_<banded::KernelNlp, banded::Nlp, std::shared_ptr<banded::KernelNlp>>(module, "KernelNlp")
       .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("weights"), py::arg("basis"),
-           py::arg("control"), py::arg("force"), py::arg("parts"), py::arg("rows"), py::arg("linear"))
+           py::arg("control"), py::arg("force"), py::arg("parts"), py::arg("rows"), py::arg("linear"),
+           py::arg("varied") = std::vector<std::tuple<std::vector<std::tuple<int, int>>, Integers>>{})
       .def(
           "set_parameters",
           [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,
@@ -200,7 +208,9 @@ PYBIND11_MODULE(_liftopt_banded, module) {
                                range ? range_of(*range) : std::vector<banded::RangeTerm>());
           },
           py::arg("part"), py::arg("parameters"), py::arg("c_weight"), py::arg("y_weight"),
-          py::arg("c_weight_below") = py::none(), py::arg("range") = py::none());
+          py::arg("c_weight_below") = py::none(), py::arg("range") = py::none())
+      .def("set_factors", [](banded::KernelNlp& nlp, const Doubles& factors) { nlp.set_factors(vector_of(factors)); },
+           "Set the factors of the varied rows' terms, (terms, knots).");
   py::class_<banded::CallbackNlp, banded::Nlp, std::shared_ptr<banded::CallbackNlp>>(module, "CallbackNlp")
       .def(py::init([](py::function evaluate, py::function differentiate, const SparseArrays& jacobian,
                        const SparseArrays& hessian) {

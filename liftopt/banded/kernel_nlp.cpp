@@ -29,12 +29,15 @@ KernelNlp::KernelNlp(Knots knots, std::vector<KernelPart> parts, std::vector<Kno
     if (static_cast<int>(row.row.size()) != knots_.knots()) throw std::invalid_argument("a row does not fit the mesh");
     for (int r : row.row)
       if (r >= 0 && std::exchange(taken.at(r), 1)) throw std::invalid_argument("a row of g has two meanings");
-    for (const KnotRow::Term& term : row.terms)
+    for (const KnotRow::Term& term : row.terms) {
       if (term.output < 0 || term.output >= parts_.at(term.part).n_c) throw std::invalid_argument("no such output");
+      n_varied_ = std::max(n_varied_, term.varied + 1);
+    }
   }
   gradient.resize(linear_.columns);
   squares.resize(linear_.rows);
   const int groups = knots_.groups();
+  factors_.resize(groups * n_varied_ * lanes());
   y_.resize(groups * n_y_ * lanes());
   for (Aligned* v : {&other_y_, &sum_y_}) v->resize(n_y_ * lanes());
   for (Aligned* v : {&c_, &pull_}) v->resize(groups * n_c_ * lanes());
@@ -52,6 +55,7 @@ void KernelNlp::find_squares() {
     for (int j = 0; j < parts_[p].n_squared; ++j) {
       const auto own = std::find_if(knot_rows_.begin(), knot_rows_.end(), [&](const KnotRow& row) {
         return row.terms.size() == 1 && row.terms[0].part == static_cast<int>(p) && row.terms[0].output == j &&
+               !row.is_varied() &&
                std::find(row.row.begin(), row.row.end(), -1) == row.row.end();
       });
       if (own == knot_rows_.end())
@@ -114,6 +118,15 @@ void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weig
   at_.clear();
 }
 
+void KernelNlp::set_factors(const Vector& factors) {
+  if (factors.size() != static_cast<std::size_t>(n_varied_) * knots_.knots())
+    throw std::length_error("a factor for each varied term at each knot");
+  for (int k = 0; k < knots_.knots(); ++k)
+    for (int j = 0; j < n_varied_; ++j)
+      factors_[(k / lanes() * n_varied_ + j) * lanes() + k % lanes()] = factors[j * knots_.knots() + k];
+  at_.clear();
+}
+
 void KernelNlp::add_squares(int group, double& f) const {
   const int width = lanes();
   const double *w = knots_.weights(group), *c = c_.data() + group * n_c_ * width;
@@ -148,11 +161,19 @@ void KernelNlp::add_outputs(int group, const double* c, double* g) const {
   const int width = lanes(), count = knots_.knots_of(group);
   for (const KnotRow& row : knot_rows_) {
     const int* to = row.row.data() + group * width;
+    double sum[kLanes] = {};
     for (const KnotRow::Term& term : row.terms) {
       const double* from = c + (first_c_[term.part] + term.output) * width;
-      for (int l = 0; l < count; ++l)
-        if (to[l] >= 0) g[to[l]] += term.factor * from[l];
+      if (term.varied < 0) {
+        for (int l = 0; l < count; ++l)
+          if (to[l] >= 0) g[to[l]] += term.factor * from[l];
+      } else {
+        const double* factor = factors(group) + term.varied * width;
+        for (int l = 0; l < width; ++l) sum[l] += factor[l] * from[l];
+      }
     }
+    for (int l = 0; row.is_varied() && l < count; ++l)
+      if (to[l] >= 0) g[to[l]] += sum[l];
   }
 }
 
@@ -162,10 +183,18 @@ void KernelNlp::pull_back(int group, const double* multipliers, double* pull) co
   std::fill_n(pull, n_c_ * width, 0.0);
   for (const KnotRow& row : knot_rows_) {
     const int* from = row.row.data() + group * width;
+    double given[kLanes] = {};
+    for (int l = 0; row.is_varied() && l < count; ++l)
+      if (from[l] >= 0) given[l] = multipliers[from[l]];
     for (const KnotRow::Term& term : row.terms) {
       double* to = pull + (first_c_[term.part] + term.output) * width;
-      for (int l = 0; l < count; ++l)
-        if (from[l] >= 0) to[l] += term.factor * multipliers[from[l]];
+      if (term.varied < 0) {
+        for (int l = 0; l < count; ++l)
+          if (from[l] >= 0) to[l] += term.factor * multipliers[from[l]];
+      } else {
+        const double* factor = factors(group) + term.varied * width;
+        for (int l = 0; l < width; ++l) to[l] += factor[l] * given[l];
+      }
     }
   }
 }
@@ -298,7 +327,8 @@ void KernelNlp::row_sizes(double* sizes) const {
       for (const KnotRow::Term& term : row.terms)
         for (int l = 0; l < knots_.knots_of(group); ++l) {
           const int r = row.row[group * width + l];
-          const double size = std::fabs(term.factor) * largest[(first_c_[term.part] + term.output) * width + l];
+          const double factor = term.varied < 0 ? term.factor : factors(group)[term.varied * width + l];
+          const double size = std::fabs(factor) * largest[(first_c_[term.part] + term.output) * width + l];
           if (r >= 0) sizes[r] = std::max(sizes[r], size);
         }
   }

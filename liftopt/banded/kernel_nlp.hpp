@@ -41,19 +41,24 @@ struct KernelPart {
 struct KnotRow {
   struct Term {
     int part, output;
-    double factor;
+    double factor;    // at every knot, unless
+    int varied = -1;  // it is that one of the factors that differ from knot to knot, see `KernelNlp::set_factors`
   };
+  bool is_varied() const { return !terms.empty() && terms[0].varied >= 0; }  // all terms are, or none
   std::vector<Term> terms;
   std::vector<int> row;  // (knots,) which of g, or -1
 };
 
 class KernelNlp : public Nlp {
  public:
-  // Each row of g has either a KnotRow or entries in `linear`, which is A. Every squared output has a row to itself.
+  // Each row of g has either a KnotRow or entries in `linear`, which is A. Every squared output has a row to itself,
+  // whose factor is the same at all knots.
   KernelNlp(Knots knots, std::vector<KernelPart> parts, std::vector<KnotRow> knot_rows, Sparse linear);
 
   void set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight, Vector c_weight_below,
                       std::vector<RangeTerm> range);
+  // (varied, knots) factors that differ from knot to knot; zero until they are set.
+  void set_factors(const Vector& factors);
 
   double evaluate(const double* x, double* g) override;
   void differentiate(const double* x, const double* multipliers, double scale) override;
@@ -72,6 +77,8 @@ class KernelNlp : public Nlp {
   // Where the nonzeros of a part are among those of a knot; the Hessian's are followed by a diagonal of the size of y.
   int first_slope(int part) const { return first_slope_[part]; }
   int first_curvature(int part) const { return first_curvature_[part]; }
+  // (varied,) vectors.
+  const double* factors(int group) const { return factors_.data() + group * n_varied_ * lanes(); }
   const double* slopes(int group) const { return slopes_.data() + group * n_slopes_ * lanes(); }
   const double* curvatures(int group) const { return curvatures_.data() + group * n_curvatures_ * lanes(); }
 
@@ -95,10 +102,11 @@ class KernelNlp : public Nlp {
   std::vector<KnotRow> knot_rows_;
   Sparse linear_;
   std::vector<int> first_y_, first_c_, first_slope_, first_curvature_;
-  int n_y_ = 0, n_c_ = 0, n_slopes_ = 0, n_curvatures_ = 0;  // of a knot
+  int n_y_ = 0, n_c_ = 0, n_slopes_ = 0, n_curvatures_ = 0, n_varied_ = 0;  // of a knot
   std::vector<std::vector<Square>> squared_;                 // of each part
   Sums by_jacobian_, by_jacobian_transposed_, by_hessian_;
   Vector at_, row_values_;
+  Aligned factors_;
   Aligned y_, c_, pull_, slopes_, curvatures_, other_y_, sum_y_, square_pull_;  // y, c, pull: of all groups
 };
 

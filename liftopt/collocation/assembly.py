@@ -119,7 +119,7 @@ def assemble(parts: Sequence[Part], weights: Array, combine: sp.csc_matrix, line
 
     f: Any = sum(piece.objective() for piece in pieces)
     g = ca.mtimes(constant(combine), ca.vertcat(*(ca.vec(piece.c) for piece in pieces)))
-    g += ca.mtimes(constant(linear), x)
+    g = ca.densify(g + ca.mtimes(constant(linear), x))  # a row may have no entry
     gradient: Any = sum(piece.gradient() for piece in pieces)
     slopes = jacobian_pattern(
         [part.kernel.jacobian.sparsity_out(0) for part in parts], [p.select for p in parts], weights, combine, linear

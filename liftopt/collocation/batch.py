@@ -31,7 +31,7 @@ class Batch:
         self._combine, self._linear = (sp.csr_matrix(m)[wanted] for m in (constraints.combine, constraints.linear))
         self._selects = [sp.csr_matrix(part.select) for part in problem.parts]
         period = [problem.task.duration]
-        self._parameters = [np.concatenate([period, topology.parameters]) for topology in problem.team.topologies]
+        self._parameters = [np.concatenate([period, topology.parameters]) for topology in problem.topologies]
         self._values = [_Mapped(part.kernel.value) for part in problem.parts]
         self._slopes = [_Mapped(part.kernel.jacobian) for part in problem.parts]
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from liftopt.collocation.kkt_poses import link_poses, object_pose
 from liftopt.collocation.kkt_wrench import add_agent_wrench, object_wrench_slopes
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
@@ -110,6 +111,10 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
 def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Array, Array]:
     """Return outputs (K, n_c) and their Jacobians (K, n_c, n_y) at every knot."""
     team = problem.team
+    if part > len(team.agents):
+        pose = problem.poses[part - len(team.agents) - 1]
+        moves = pose.part < len(team.agents)
+        return link_poses(team.agents[pose.part], pose.joints, y) if moves else object_pose(y)
     if part < len(team.agents):
         agent = team.agents[part]
         found = _agent_knots(agent, y, period)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,6 +31,11 @@ class Weights:
     below: Array
     variable: Array
     range: Array
+
+    @staticmethod
+    def none(n_y: int) -> Weights:
+        """Return those of a part that costs nothing, without squared outputs."""
+        return Weights(np.zeros(0), np.zeros(0), np.zeros(n_y), np.zeros((RANGE_ROWS, 0)))
 
     def of_outputs(self, c: Array) -> Array:
         """Return the weight of each squared leading output in ``c`` (..., n_squared): that of its side."""
@@ -63,9 +68,9 @@ def agent_weights(task: LiftTask, i: int, agent: Agent, n_y: int, posture_weight
 
 def object_weights(task: LiftTask, n_y: int, posture_weight: float = 0.0) -> Weights:
     """Return what the objective weighs of the object; arguments as ``agent_weights``."""
-    variable, none = _motion_weights(task, OBJECT_SIZE, n_y, posture_weight), np.zeros(0)
+    variable = _motion_weights(task, OBJECT_SIZE, n_y, posture_weight)
     variable[ANGLES] += task.tilt_weight * task.duration / TILT**2
-    return Weights(none, none, variable, np.zeros((RANGE_ROWS, 0)))
+    return replace(Weights.none(n_y), variable=variable)
 
 
 def torque_units(limits: JointLimits) -> tuple[Array, Array]:

@@ -7,7 +7,6 @@ from collections import Counter
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import FREE
 from liftopt.files.suggestions import did_you_mean, nearest
-from liftopt.multibody.solids import FLOOR
 from liftopt.scenario.agents import NAME, NAMES
 from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lead, stand_of
@@ -51,6 +50,10 @@ def _check_names(scenario: ScenarioFields) -> None:
 
 
 def _check_obstacles(scenario: ScenarioFields) -> None:
+    if not scenario.obstacles:
+        return
+    from liftopt.multibody.solids import FLOOR  # with NumPy, which most entries are checked without
+
     seen = {*scenario.agents, scenario.object.name, FLOOR.owner}
     for obstacle in scenario.obstacles:
         if obstacle.name in seen:
