@@ -29,12 +29,15 @@ KernelNlp::KernelNlp(Knots knots, std::vector<KernelPart> parts, std::vector<Kno
     if (static_cast<int>(row.row.size()) != knots_.knots()) throw std::invalid_argument("a row does not fit the mesh");
     for (int r : row.row)
       if (r >= 0 && std::exchange(taken.at(r), 1)) throw std::invalid_argument("a row of g has two meanings");
-    for (const KnotRow::Term& term : row.terms)
+    for (const KnotRow::Term& term : row.terms) {
       if (term.output < 0 || term.output >= parts_.at(term.part).n_c) throw std::invalid_argument("no such output");
+      n_varied_ = std::max(n_varied_, term.varied + 1);
+    }
   }
   gradient.resize(linear_.columns);
   squares.resize(linear_.rows);
   const int groups = knots_.groups();
+  factors_.resize(groups * n_varied_ * lanes());
   y_.resize(groups * n_y_ * lanes());
   for (Aligned* v : {&other_y_, &sum_y_}) v->resize(n_y_ * lanes());
   for (Aligned* v : {&c_, &pull_}) v->resize(groups * n_c_ * lanes());
@@ -52,6 +55,7 @@ void KernelNlp::find_squares() {
     for (int j = 0; j < parts_[p].n_squared; ++j) {
       const auto own = std::find_if(knot_rows_.begin(), knot_rows_.end(), [&](const KnotRow& row) {
         return row.terms.size() == 1 && row.terms[0].part == static_cast<int>(p) && row.terms[0].output == j &&
+               !row.is_varied() &&
                std::find(row.row.begin(), row.row.end(), -1) == row.row.end();
       });
       if (own == knot_rows_.end())
@@ -98,15 +102,28 @@ void KernelNlp::plan_products() {
   by_hessian_ = sums_of(hessian);
 }
 
-void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight) {
+void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight,
+                               Vector c_weight_below, std::vector<RangeTerm> range) {
   KernelPart& at = parts_.at(part);
   if (static_cast<int>(parameters.size()) != at.n_p || static_cast<int>(c_weight.size()) != at.n_squared ||
-      static_cast<int>(y_weight.size()) != at.columns.size())
+      c_weight_below.size() != c_weight.size() || static_cast<int>(y_weight.size()) != at.columns.size() ||
+      static_cast<int>(range.size()) > at.columns.size())
     throw std::length_error("the parameters of a part do not have its sizes");
   at.parameters.resize(parameters.size() * lanes());
   for (std::size_t i = 0; i < at.parameters.size(); ++i) at.parameters[i] = parameters[i / lanes()];
   at.c_weight = std::move(c_weight);
   at.y_weight = std::move(y_weight);
+  at.c_weight_below = std::move(c_weight_below);
+  at.range = std::move(range);
+  at_.clear();
+}
+
+void KernelNlp::set_factors(const Vector& factors) {
+  if (factors.size() != static_cast<std::size_t>(n_varied_) * knots_.knots())
+    throw std::length_error("a factor for each varied term at each knot");
+  for (int k = 0; k < knots_.knots(); ++k)
+    for (int j = 0; j < n_varied_; ++j)
+      factors_[(k / lanes() * n_varied_ + j) * lanes() + k % lanes()] = factors[j * knots_.knots() + k];
   at_.clear();
 }
 
@@ -115,14 +132,26 @@ void KernelNlp::add_squares(int group, double& f) const {
   const double *w = knots_.weights(group), *c = c_.data() + group * n_c_ * width;
   const double* y = y_.data() + group * n_y_ * width;
   double sum[kLanes] = {};
-  const auto add = [&](const Vector& weight, const double* values) {
-    for (std::size_t j = 0; j < weight.size(); ++j)
-      if (weight[j] != 0.0)
-        for (int l = 0; l < width; ++l) sum[l] += weight[j] * values[j * width + l] * values[j * width + l];
+  const auto add = [&](const Vector& below, const Vector& above, const double* values) {
+    for (std::size_t j = 0; j < above.size(); ++j)
+      if (below[j] != 0.0 || above[j] != 0.0)
+        for (int l = 0; l < width; ++l) {
+          const double value = values[j * width + l];
+          sum[l] += (value > 0.0 ? above[j] : below[j]) * value * value;
+        }
   };
   for (std::size_t p = 0; p < parts_.size(); ++p) {
-    add(parts_[p].c_weight, c + first_c_[p] * width);
-    add(parts_[p].y_weight, y + first_y_[p] * width);
+    const KernelPart& part = parts_[p];
+    add(part.c_weight_below, part.c_weight, c + first_c_[p] * width);
+    add(part.y_weight, part.y_weight, y + first_y_[p] * width);
+    for (std::size_t j = 0; j < part.range.size(); ++j) {
+      const RangeTerm& term = part.range[j];
+      for (int l = 0; l < width; ++l) {
+        const double away = y[(first_y_[p] + static_cast<int>(j)) * width + l] - term.neutral, squared = away * away;
+        const int side = away > 0.0;
+        sum[l] += (term.square[side] + term.fourth[side] * squared) * squared;
+      }
+    }
   }
   for (int l = 0; l < width; ++l) f += w[l] * sum[l];
 }
@@ -132,11 +161,19 @@ void KernelNlp::add_outputs(int group, const double* c, double* g) const {
   const int width = lanes(), count = knots_.knots_of(group);
   for (const KnotRow& row : knot_rows_) {
     const int* to = row.row.data() + group * width;
+    double sum[kLanes] = {};
     for (const KnotRow::Term& term : row.terms) {
       const double* from = c + (first_c_[term.part] + term.output) * width;
-      for (int l = 0; l < count; ++l)
-        if (to[l] >= 0) g[to[l]] += term.factor * from[l];
+      if (term.varied < 0) {
+        for (int l = 0; l < count; ++l)
+          if (to[l] >= 0) g[to[l]] += term.factor * from[l];
+      } else {
+        const double* factor = factors(group) + term.varied * width;
+        for (int l = 0; l < width; ++l) sum[l] += factor[l] * from[l];
+      }
     }
+    for (int l = 0; row.is_varied() && l < count; ++l)
+      if (to[l] >= 0) g[to[l]] += sum[l];
   }
 }
 
@@ -146,10 +183,18 @@ void KernelNlp::pull_back(int group, const double* multipliers, double* pull) co
   std::fill_n(pull, n_c_ * width, 0.0);
   for (const KnotRow& row : knot_rows_) {
     const int* from = row.row.data() + group * width;
+    double given[kLanes] = {};
+    for (int l = 0; row.is_varied() && l < count; ++l)
+      if (from[l] >= 0) given[l] = multipliers[from[l]];
     for (const KnotRow::Term& term : row.terms) {
       double* to = pull + (first_c_[term.part] + term.output) * width;
-      for (int l = 0; l < count; ++l)
-        if (from[l] >= 0) to[l] += term.factor * multipliers[from[l]];
+      if (term.varied < 0) {
+        for (int l = 0; l < count; ++l)
+          if (from[l] >= 0) to[l] += term.factor * multipliers[from[l]];
+      } else {
+        const double* factor = factors(group) + term.varied * width;
+        for (int l = 0; l < width; ++l) to[l] += factor[l] * given[l];
+      }
     }
   }
 }
@@ -201,8 +246,9 @@ void KernelNlp::differentiate(int group, double scale, double* by_y) {
       const int* row = knot_rows_[square.row].row.data() + group * width;
       for (int l = 0; l < knots_.knots_of(group); ++l) {
         // The square's 2 w c' c'^T in terms of rows of g, which are factor times c.
-        const double weight = 2.0 * scale * w[l] * part.c_weight[j];
-        square_pull[square.output * width + l] = weight * c[square.output * width + l];
+        const double value = c[square.output * width + l];
+        const double weight = 2.0 * scale * w[l] * (value > 0.0 ? part.c_weight[j] : part.c_weight_below[j]);
+        square_pull[square.output * width + l] = weight * value;
         pull[square.output * width + l] += square_pull[square.output * width + l];
         squares[row[l]] = weight / (square.factor * square.factor);
       }
@@ -216,6 +262,16 @@ void KernelNlp::differentiate(int group, double scale, double* by_y) {
         diagonal[j * width + l] = 2.0 * scale * w[l] * part.y_weight[j];
         by_y[(first_y_[p] + j) * width + l] = diagonal[j * width + l] * y[(first_y_[p] + j) * width + l];
       }
+    for (std::size_t j = 0; j < part.range.size(); ++j) {
+      const RangeTerm& term = part.range[j];
+      const int at = (first_y_[p] + static_cast<int>(j)) * width;
+      for (int l = 0; l < width; ++l) {
+        const double away = y[at + l] - term.neutral, weight = scale * w[l];
+        const int side = away > 0.0;
+        by_y[at + l] += weight * (2.0 * term.square[side] + 4.0 * term.fourth[side] * away * away) * away;
+        diagonal[j * width + l] += weight * (2.0 * term.square[side] + 12.0 * term.fourth[side] * away * away);
+      }
+    }
   }
   knots_.operations().multiply(by_jacobian_transposed_, slopes, square_pull, by_y);
 }
@@ -271,7 +327,8 @@ void KernelNlp::row_sizes(double* sizes) const {
       for (const KnotRow::Term& term : row.terms)
         for (int l = 0; l < knots_.knots_of(group); ++l) {
           const int r = row.row[group * width + l];
-          const double size = std::fabs(term.factor) * largest[(first_c_[term.part] + term.output) * width + l];
+          const double factor = term.varied < 0 ? term.factor : factors(group)[term.varied * width + l];
+          const double size = std::fabs(factor) * largest[(first_c_[term.part] + term.output) * width + l];
           if (r >= 0) sizes[r] = std::max(sizes[r], size);
         }
   }

@@ -41,7 +41,7 @@ void KnotAssembly::plan_rows() {
     Support support{false, std::vector<int>(knots_.coordinates(), -1), std::vector<int>(knots_.forces(), -1)};
     struct Slope {
       Variable at;
-      int from;
+      int from, varied;
       double factor;
     };
     std::vector<Slope> slopes;
@@ -51,7 +51,7 @@ void KnotAssembly::plan_rows() {
         if (part.jacobian_row[e] == term.output) {
           const Variable at = variable(part.columns, part.jacobian_column[e]);
           if (at.index < 0) continue;
-          slopes.push_back({at, nlp_.first_slope(term.part) + static_cast<int>(e), term.factor});
+          slopes.push_back({at, nlp_.first_slope(term.part) + static_cast<int>(e), term.varied, term.factor});
           support.all_orders |= at.order > 0;
         }
     }
@@ -63,7 +63,7 @@ void KnotAssembly::plan_rows() {
         n_entries_ += !slope.at.is_force && support.all_orders ? kOrders : 1;
       }
       const int to = place + slope.at.order;
-      entries_.push_back({static_cast<int>(t), slope.from, to, slope.factor, written.insert(to).second});
+      entries_.push_back({static_cast<int>(t), slope.from, to, slope.varied, slope.factor, written.insert(to).second});
     }
     supports_.push_back(std::move(support));
   }
@@ -196,8 +196,8 @@ void KnotAssembly::add(const double* d, double* matrix) {
       for (int l = 0; l < lanes_; ++l)
         scale_[t * lanes_ + l] = l < knots_.knots_of(group) && row[l] >= 0 ? std::sqrt(d[row[l]]) : 0.0;
     }
-    operations.fill_rows(entries_.data(), static_cast<int>(entries_.size()), scale_.data(), nlp_.slopes(group),
-                         rows_.data());
+    operations.fill_rows(entries_.data(), static_cast<int>(entries_.size()), scale_.data(), nlp_.factors(group),
+                         nlp_.slopes(group), rows_.data());
     for (std::size_t s = 0; s + 1 < strips_.size(); ++s) {
       double* entries = strip_.data();
       for (std::size_t i = strips_[s]; i < strips_[s + 1]; ++i, entries += width_ * width_ * lanes_)

@@ -54,11 +54,13 @@ LIFTOPT_INLINE void interpolate_transposed(const double* basis, int width, const
 }
 
 template <class Lane>
-LIFTOPT_INLINE void fill_rows(const RowEntry* entries, int count, const double* scale, const double* slopes,
-                              double* rows) {
+LIFTOPT_INLINE void fill_rows(const RowEntry* entries, int count, const double* scale, const double* factors,
+                              const double* slopes, double* rows) {
   Lane* to = lanes<Lane>(rows);
   for (const RowEntry* e = entries; e != entries + count; ++e) {
-    const Lane value = lanes<Lane>(scale)[e->row] * e->factor * lanes<Lane>(slopes)[e->from];
+    const Lane weight = e->varied < 0 ? lanes<Lane>(scale)[e->row] * e->factor
+                                      : lanes<Lane>(scale)[e->row] * lanes<Lane>(factors)[e->varied];
+    const Lane value = weight * lanes<Lane>(slopes)[e->from];
     to[e->to] = e->first ? value : to[e->to] + value;
   }
 }
@@ -145,9 +147,9 @@ LIFTOPT_INLINE void condense(const Pair& pair, const double* basis, int width, c
                                      double* points) {                                                                 \
     banded::interpolate_transposed<LANE>(basis, width, y, stride, n, points);                                          \
   }                                                                                                                    \
-  TARGET void fill_rows(const RowEntry* entries, int count, const double* scale, const double* slopes,                 \
-                        double* rows) {                                                                                \
-    banded::fill_rows<LANE>(entries, count, scale, slopes, rows);                                                      \
+  TARGET void fill_rows(const RowEntry* entries, int count, const double* scale, const double* factors,                \
+                        const double* slopes, double* rows) {                                                          \
+    banded::fill_rows<LANE>(entries, count, scale, factors, slopes, rows);                                             \
   }                                                                                                                    \
   TARGET void condense(const Pair& pair, const double* basis, int width, const double* curvatures,                     \
                        const double* rows, double* entries) {                                                          \

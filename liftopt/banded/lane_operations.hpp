@@ -20,9 +20,9 @@ struct Sums {
   std::vector<Sum> sums;
 };
 
-// rows[to] = or += scale[row] factor slopes[from].
+// rows[to] = or += scale[row] factor slopes[from]; where `varied` is not negative, factors[varied] is the factor.
 struct RowEntry {
-  int row, from, to;
+  int row, from, to, varied;
   double factor;
   bool first;
 };
@@ -47,7 +47,8 @@ struct LaneOperations {
   // y (orders, n) = basis (orders, width) points (width, stride); and transposed.
   void (*interpolate)(const double* basis, int width, const double* points, int stride, int n, double* y);
   void (*interpolate_transposed)(const double* basis, int width, const double* y, int stride, int n, double* points);
-  void (*fill_rows)(const RowEntry* entries, int count, const double* scale, const double* slopes, double* rows);
+  void (*fill_rows)(const RowEntry* entries, int count, const double* scale, const double* factors,
+                    const double* slopes, double* rows);
   // The entries of H + R^T R between the control points, forces of a pair: (width, width), (width,) or one.
   void (*condense)(const Pair& pair, const double* basis, int width, const double* curvatures, const double* rows,
                    double* entries);

@@ -8,6 +8,7 @@ bases, 9: rest at both ends), or they are bounds on unknowns (1: joint limits, 5
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,8 @@ import scipy.sparse as sp
 
 from liftopt.collocation.flat_hand import PUSH, flat_hand_rows
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
+from liftopt.collocation.pose_kernels import POSE_SIZE
+from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.types import Array
@@ -29,8 +32,8 @@ class Block:
 
     Attributes:
         name: ``"grasp_closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
-            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``.
-        who: agent or object.
+            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
+        who: agent or object; of clearance, the two bodies by number.
         rows: where in g.
         labels: meaning of the rows at one knot; they repeat knot by knot.
         lower, upper: bounds of the rows, scaled as the rows are.
@@ -77,17 +80,58 @@ class _Rows:
         self.blocks.append(Block(name, who, slice(first, self.n), labels, *bounds))
 
 
+@dataclass(frozen=True, eq=False)
+class VariedRow:
+    """A row of every knot whose factors differ from knot to knot; they may change between solves.
+
+    Attributes:
+        terms: (part, output) of each term.
+        rows: (K,) which of g.
+        factors: (terms, K).
+    """
+
+    terms: tuple[tuple[int, int], ...]
+    rows: Index
+    factors: Array
+
+
 @dataclass(frozen=True)
 class Constraints:
-    """All rows: ``g = combine @ C + linear @ x`` with the named blocks in order."""
+    """All rows: ``g = combine @ C + linear @ x`` with the named blocks in order.
+
+    Attributes:
+        blocks: the rows by name.
+        combine, linear: their factors.
+        varied: those rows of ``combine`` that have other factors at every knot.
+    """
 
     blocks: tuple[Block, ...]
     combine: sp.csc_matrix
     linear: sp.csc_matrix
+    varied: tuple[VariedRow, ...] = ()
 
     def same_rows(self, other: Constraints) -> bool:
         """Whether the rows are the same functions, scales included, so that only bounds and parameters may differ."""
         return self is other or (_same(self.combine, other.combine) and _same(self.linear, other.linear))
+
+    def same_but_factors(self, other: Constraints) -> bool:
+        """Whether the rows differ at most in the factors of ``varied``."""
+        if not self.varied:
+            return self.same_rows(other)
+        structure = ([(row.terms, row.rows.tolist()) for row in constraints.varied] for constraints in (self, other))
+        return next(structure) == next(structure) and (
+            _same(self.fixed, other.fixed) and _same(self.linear, other.linear)
+        )
+
+    @cached_property
+    def fixed(self) -> sp.csr_matrix:
+        """``combine`` without the rows of ``varied``, which are empty here."""
+        matrix = sp.csr_matrix(self.combine, copy=True)
+        for row in self.varied:
+            for r in row.rows:
+                matrix.data[matrix.indptr[r] : matrix.indptr[r + 1]] = 0.0
+        matrix.eliminate_zeros()
+        return matrix
 
     @property
     def lower(self) -> Array:
@@ -101,7 +145,12 @@ class Constraints:
 
 
 def build_constraints(
-    agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask, layout: Layout, outputs: tuple[int, ...]
+    agents: tuple[Agent, ...],
+    lifted: LiftedObject,
+    task: LiftTask,
+    layout: Layout,
+    outputs: tuple[int, ...],
+    planes: SeparatingPlanes | None = None,
 ) -> Constraints:
     """Build the rows for agents that hold one object.
 
@@ -110,7 +159,8 @@ def build_constraints(
         lifted: the object.
         task: limits and tolerances.
         layout: of the unknowns.
-        outputs: number of kernel outputs a knot, of each agent and then of the object.
+        outputs: number of kernel outputs a knot, of each agent, of the object and then of the parts of ``planes``.
+        planes: what keeps bodies apart; None: nothing does.
     """
     rows = _Rows(layout, outputs)
     for i, agent in enumerate(agents):
@@ -124,11 +174,13 @@ def build_constraints(
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
     _balance(rows, len(agents), lifted, served_rows(agents, lifted, task.balance_tolerance), task.balance_tolerance)
     _velocity(rows, len(agents), lifted.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
+    varied = _clearance(rows, len(agents) + 1, planes) if planes else ()
     n_c = len(layout.mesh.phase) * sum(outputs)
     return Constraints(
         tuple(rows.blocks),
         _matrix(rows.combine, (rows.n, n_c)),
         _matrix(rows.linear, (rows.n, layout.n_x)),
+        varied,
     )
 
 
@@ -211,6 +263,29 @@ def _velocity(rows: _Rows, part: int, who: str, labels: tuple[str, ...], limit: 
     rows.linear.append((row.ravel(), control[i].ravel(), np.repeat(slope[r, i], n)))
     if len(slope):
         rows.close("velocity", who, labels, -limit, limit, len(slope))
+
+
+def _clearance(rows: _Rows, first_part: int, planes: SeparatingPlanes) -> tuple[VariedRow, ...]:
+    """Points of two bodies stay on both sides of a plane, each row at every knot [m]."""
+    knots, found, axes = rows.knots, [], np.arange(POSE_SIZE)
+    for separation in planes.separations:
+        m, terms = separation.rows, []
+        at = rows.n + m * knots[:, None] + np.arange(m)
+        for body, factors in separation.factors:
+            part, first = planes.output(body)
+            part += first_part
+            outputs = rows.outputs_at(part, knots, first + axes)[:, None].repeat(m, axis=1)
+            rows.combine.append((at.repeat(POSE_SIZE), outputs.ravel(), factors.ravel()))
+            terms.append(([(part, first + axis) for axis in range(POSE_SIZE)], factors))
+        places = tuple(place for own, _ in terms for place in own)
+        both = np.concatenate([factors for _, factors in terms], axis=2)
+        found += [VariedRow(places, at[:, j], both[:, j].T) for j in range(m)]
+        labels = tuple(f"row {j + 1}" for j in range(m))
+        who = f"{separation.one} and {separation.other}"
+        first_row, rows.n = rows.n, rows.n + at.size
+        lower = separation.lower.ravel()
+        rows.blocks.append(Block("clearance", who, slice(first_row, rows.n), labels, lower, np.full(at.size, np.inf)))
+    return tuple(found)
 
 
 def _matrix(triplets: list[tuple[Index, Index, Array]], shape: tuple[int, int]) -> sp.csc_matrix:

@@ -26,9 +26,9 @@ from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.types import Array
 
-# Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space: a broken limit can be put right by
-# someone stronger or slower, a grasp that does not hold cannot.
-CLOSURE_PRICE, SHARE_PRICE, WORKSPACE_PRICE = 1000.0, 10.0, 100.0
+# Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space or too near to another body: a broken
+# limit can be put right by someone stronger or slower, a grasp that does not hold cannot.
+CLOSURE_PRICE, SHARE_PRICE, WORKSPACE_PRICE, CLEARANCE_PRICE = 1000.0, 10.0, 100.0, 100.0
 LINEAR = OBJECT_COORDINATES[:3]
 # Weight of the objective beside the prices; its multipliers stay far below them.
 OBJECTIVE = 1e-4
@@ -90,7 +90,7 @@ def solve_elastic(problem: Problem, x0: Array, deadline: Deadline, most: int = M
     Raises:
         SolverError: IPOPT cannot run.
     """
-    soft = SoftProblem(problem.team, problem.task, problem.mesh, problem.posture_weight)
+    soft = SoftProblem(problem.team, problem.task, problem.mesh, problem.posture_weight, problem.planes)
     start = soft.start(x0)
     result = Ipopt(soft, IpoptOptions(TOLERANCE, MAX_ITERATIONS, 1.0)).solve(start, deadline=deadline, most=most)
     x, slack = np.split(result.x, [problem.layout.n_x])
@@ -108,7 +108,7 @@ class SoftProblem(Problem):
     @cached_property
     def plain(self) -> Problem:
         """The problem itself."""
-        return Problem(self.team, self.task, self.mesh, self.posture_weight)
+        return Problem(self.team, self.task, self.mesh, self.posture_weight, self.planes)
 
     @cached_property
     def soft(self) -> npt.NDArray[np.int64]:
@@ -244,6 +244,8 @@ class SoftProblem(Problem):
             return np.full(len(block.lower), CLOSURE_PRICE)
         if block.name == "workspace":
             return np.full(len(block.lower), WORKSPACE_PRICE)
+        if block.name == "clearance":
+            return np.full(len(block.lower), CLEARANCE_PRICE)
         if block.name == "velocity":
             return SHARE_PRICE / block.upper
         # The squared share of a force grows twice as fast as the share.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from liftopt.collocation.kkt_poses import link_poses, object_pose
 from liftopt.collocation.kkt_wrench import add_agent_wrench, object_wrench_slopes
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
@@ -66,12 +67,16 @@ def first_order(problem: Problem, x: Array, multipliers: Multipliers) -> FirstOr
     for i, part in enumerate(problem.parts):
         y = (part.select @ x).reshape(len(weights), part.kernel.n_y)
         c, jacobian = _evaluate(problem, i, y, period)
-        leading, y_weight = problem.weights(i)
-        c_weight = np.concatenate([leading, np.zeros(part.kernel.n_c - len(leading))])
-        objective += float(weights @ (c**2 @ c_weight + y**2 @ y_weight))
+        own = problem.weights(i)
+        c_weight = np.zeros_like(c)
+        c_weight[:, : len(own.above)] = own.of_outputs(c[:, : len(own.above)])
+        squares = (c**2 * c_weight).sum(axis=1) + y**2 @ own.variable + own.range_cost(y).sum(axis=1)
+        objective += float(weights @ squares)
         pull, pulls = pulls[: c.size].reshape(c.shape), pulls[c.size :]
         by_c = pull + 2 * weights[:, None] * c * c_weight
-        by_y = turned(jacobian.swapaxes(1, 2), by_c) + 2 * weights[:, None] * y * y_weight
+        by_y = turned(jacobian.swapaxes(1, 2), by_c) + 2 * weights[:, None] * y * own.variable
+        n_range = own.range.shape[1]
+        by_y[:, :n_range] += weights[:, None] * own.range_cost(y + 1j * STEP).imag / STEP
         gradient += part.select.T @ by_y.ravel()
         outputs.append(c.ravel())
     return FirstOrder(gradient, constraints.combine @ np.concatenate(outputs) + constraints.linear @ x, objective)
@@ -106,6 +111,10 @@ def kkt_error(problem: Problem, x: Array, multipliers: Multipliers) -> KktError:
 def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Array, Array]:
     """Return outputs (K, n_c) and their Jacobians (K, n_c, n_y) at every knot."""
     team = problem.team
+    if part > len(team.agents):
+        pose = problem.poses[part - len(team.agents) - 1]
+        moves = pose.part < len(team.agents)
+        return link_poses(team.agents[pose.part], pose.joints, y) if moves else object_pose(y)
     if part < len(team.agents):
         agent = team.agents[part]
         found = _agent_knots(agent, y, period)

@@ -121,3 +121,11 @@ class Layout:
         values.append(np.repeat(self.mesh.basis[0][knot, i], others.shape[1]))
         row, col = (np.concatenate([part.ravel() for part in parts]) for parts in (rows, cols))
         return sp.csc_matrix((np.concatenate(values), (row, col)), shape=(len(force) * n_y, self.n_x))
+
+    def select_values(self, part: int) -> sp.csc_matrix:
+        """Return S (K n, n_x): at each knot the n coordinates of a part, without derivatives and forces."""
+        control, basis = self.control[:, self.columns(part)], self.mesh.basis[0]
+        n, (knot, i) = control.shape[1], np.nonzero(basis)
+        rows = n * knot[:, None] + np.arange(n)
+        entries = np.repeat(basis[knot, i], n), (rows.ravel(), control[i].ravel())
+        return sp.csc_matrix(entries, shape=(len(basis) * n, self.n_x))

@@ -38,7 +38,7 @@ class SolverCache:
         self._postures: PostureSolver | None = None
         self._meshes: dict[RestToRestSpline, Mesh] = {}
         self._problems: dict[RestToRestSpline, tuple[Scenario, Problem]] = {}
-        self._solvers: dict[tuple[str, int, float, float, int], tuple[Problem, Solver]] = {}
+        self._solvers: dict[tuple[str, int, float, float, int, bool], Solver] = {}
 
     def problem(self, scenario: Scenario, spline: RestToRestSpline, progress: Progress | None = None) -> Problem:
         """Return the lift of a scenario on a mesh; ``progress`` is called when kernels must be compiled first."""
@@ -73,17 +73,18 @@ class SolverCache:
             SolverError: it cannot be set up.
         """
         tolerance = scenario.solver.tolerance
-        key = (name, worker, tolerance, rough, len(problem.mesh.phase))
+        # Free problems and those with planes take turns, on one mesh.
+        key = (name, worker, tolerance, rough, len(problem.mesh.phase), problem.planes is not None)
         kept = self._solvers.get(key)
-        if kept is None or not problem.interchangeable(kept[0]):
+        if kept is None or not kept.takes(problem):
             made: Solver
             if name == BANDED:
                 made = Banded(problem, BandedOptions(tolerance=tolerance, rough=rough), progress)
             else:
                 options = IpoptOptions(tolerance=tolerance, objective_scaling=LIFT_SCALING)
                 made = Ipopt(problem, options, kernels_for_simd(problem, progress))
-            kept = self._solvers[key] = (problem, made)
-        return kept[1]
+            kept = self._solvers[key] = made
+        return kept
 
     def postures(self, problem: Problem, scenario: Scenario, progress: Progress | None = None) -> PostureSolver:
         """Return the solver of static postures for a lift; ``progress`` is called when kernels must be compiled."""

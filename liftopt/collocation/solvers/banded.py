@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from liftopt.collocation.constraints import Constraints
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded_nlp import callback_nlp, kernel_nlp, kernels_for_simd
 from liftopt.collocation.solvers.deadline import Deadline
@@ -171,18 +172,31 @@ class Banded:
         f, g = self._nlp.evaluate(x)
         return float(f), np.asarray(g)
 
+    def takes(self, problem: Problem) -> bool:
+        """Whether it may be solved without another solver."""
+        return problem.differs_in_factors(self.problem) if self._kernels else problem.interchangeable(self.problem)
+
+    def _takes(self, constraints: Constraints) -> bool:
+        own = self.problem.constraints
+        return constraints.same_but_factors(own) if self._kernels else constraints.same_rows(own)
+
     def _set_parameters(self, problem: Problem) -> None:
         if problem is self._current:
             return
-        if not problem.constraints.same_rows(self.problem.constraints):
+        if not self._takes(problem.constraints):
             raise SolverError("the problem has other constraint rows than the one this solver was built for")
         self._current = problem
         if not self._kernels:
             self._parameters[:] = problem.parameters
             return
-        for i, topology in enumerate(problem.team.topologies):
+        for i, topology in enumerate(problem.topologies):
             kernel = np.concatenate([[problem.task.duration], topology.parameters])
-            self._nlp.set_parameters(i, kernel, *problem.weights(i))
+            own = problem.weights(i)
+            self._nlp.set_parameters(
+                i, kernel, c_weight=own.above, y_weight=own.variable, c_weight_below=own.below, range=own.range
+            )
+        if problem.constraints.varied:
+            self._nlp.set_factors(np.concatenate([row.factors for row in problem.constraints.varied]))
 
 
 def elimination_order(problem: Problem) -> list[list[int]]:

@@ -11,19 +11,21 @@ import scipy.sparse as sp
 
 from liftopt.collocation.assembly import Nlp
 from liftopt.collocation.codegen.simd_kernels import SimdKernel, load_simd_kernels
-from liftopt.collocation.problem import Problem, kernel_requests
+from liftopt.collocation.problem import Problem
 from liftopt.errors import SolverError
 from liftopt.types import Array, Progress
 
 
 def kernels_for_simd(problem: Problem, progress: Progress | None = None) -> list[SimdKernel] | None:
     """Return the kernels of a problem's parts for several knots at once, or None where they cannot be made."""
-    return load_simd_kernels(kernel_requests(problem.team.agents, problem.team.object), progress)
+    return load_simd_kernels(problem.requests, progress)
 
 
 def kernel_nlp(module: Any, problem: Problem, kernels: list[SimdKernel]) -> Any:
     """Return the problem as the SIMD kernels evaluate it."""
-    layout, mesh = problem.layout, problem.mesh
+    layout, mesh, varied = problem.layout, problem.mesh, problem.constraints.varied
+    # Only what needs it asks for it, so that extensions of other versions do for all else.
+    more = {"varied": [(list(row.terms), row.rows.astype(np.int32)) for row in varied]} if varied else {}
     return module.KernelNlp(
         lanes=kernels[0].lanes,
         weights=mesh.weights,
@@ -33,20 +35,26 @@ def kernel_nlp(module: Any, problem: Problem, kernels: list[SimdKernel]) -> Any:
         parts=[_part(problem, i, simd) for i, simd in enumerate(kernels)],
         rows=knot_rows(problem),
         linear=_arrays(problem.constraints.linear),
+        **more,
     )
 
 
 def _part(problem: Problem, part: int, simd: SimdKernel) -> dict[str, Any]:
-    """Return what the extension takes of an agent or of the object."""
-    kernel, layout = problem.team.kernels[part], problem.layout
-    coordinates = layout.columns(part)
+    """Return what the extension takes of an agent, of the object or of poses, which take values alone."""
+    kernel, layout, own = problem.parts[part].kernel, problem.layout, len(problem.team.kernels)
+    forces: npt.NDArray[np.int64]
+    if part < own:
+        coordinates, forces, others = layout.columns(part), layout.kernel_forces(part), layout.kernel_others(part)
+    else:
+        values = layout.columns(problem.poses[part - own].part)
+        coordinates, forces, others = slice(0, 0), np.zeros(0, np.int64), np.arange(values.start, values.stop)
     return dict(
         value=simd.value,
         derivatives=simd.derivatives,
         first=coordinates.start,
         coordinates=coordinates.stop - coordinates.start,
-        forces=layout.kernel_forces(part).astype(np.int32),
-        others=layout.kernel_others(part).astype(np.int32),
+        forces=forces.astype(np.int32),
+        others=others.astype(np.int32),
         n_c=kernel.n_c,
         n_p=kernel.n_p,
         n_squared=kernel.n_squared,
@@ -64,17 +72,18 @@ Term = tuple[int, int, float]
 
 
 def knot_rows(problem: Problem) -> list[tuple[list[Term], npt.NDArray[np.int32]]]:
-    """Return the rows of g that are sums of outputs, once for all knots that have them.
+    """Return the rows of g that are sums of outputs with the same factors, once for all knots that have them.
 
     Each is a list of (part, output, factor), and which row it is at every knot, (K,), -1 where there is none.
 
     Raises:
         SolverError: a row takes outputs of several knots, or of a knot and unknowns.
     """
-    knots, parts = len(problem.mesh.weights), problem.team.kernels
-    combine, linear = sp.csr_matrix(problem.constraints.combine), sp.csr_matrix(problem.constraints.linear)
+    knots, parts, constraints = len(problem.mesh.weights), problem.parts, problem.constraints
+    combine = sp.csr_matrix(constraints.fixed if constraints.varied else constraints.combine)
+    linear = sp.csr_matrix(constraints.linear)
     combine.sort_indices()
-    where = [(p, k, j) for p, kernel in enumerate(parts) for k in range(knots) for j in range(kernel.n_c)]
+    where = [(p, k, j) for p, part in enumerate(parts) for k in range(knots) for j in range(part.kernel.n_c)]
     found: dict[tuple[Term, ...], npt.NDArray[np.int32]] = {}
     for row in range(combine.shape[0]):
         entries = slice(combine.indptr[row], combine.indptr[row + 1])

@@ -70,6 +70,10 @@ class Ipopt:
         self._stop = _Stop(len(problem.bounds()[0]), problem.constraints.linear.shape[0], len(problem.parameters))
         self._solvers: dict[bool, Any] = {}
 
+    def takes(self, problem: Problem) -> bool:
+        """Whether it may be solved without another solver."""
+        return problem.interchangeable(self.problem)
+
     def solve(
         self,
         x0: Array,

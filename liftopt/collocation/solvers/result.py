@@ -58,6 +58,10 @@ class SolverResult:
 class Solver(Protocol):
     """A solver bound to one problem."""
 
+    def takes(self, problem: Problem) -> bool:
+        """Whether a problem may be solved in the place of the bound one, without another solver."""
+        ...
+
     def solve(
         self,
         x0: Array,
