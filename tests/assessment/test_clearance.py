@@ -106,7 +106,7 @@ def test_person_and_robot_have_distance_and_speed_and_no_claim_of_safety(light: 
 
 @pytest.mark.parametrize(("top", "room"), [(0.89, 0.01), (0.87, 0.03)])
 def test_fingers_under_the_edge_need_room(light: Solution, top: float, room: float) -> None:
-    under = {"name": "stand", "box": [0.6, 0.4, 0.1], "position": [0.6, 0.0, top - 0.1]}
+    under = {"name": "stand", "box": [0.6, 0.4, 0.1], "position": [0.6, 0.0, top - 0.05]}
     found = _of(_with(light, obstacles=[under]), "fingers")
     fine = between_knots(light)
     assert fine["human"].grasp_position[0, 2] == pytest.approx(0.9)
@@ -121,7 +121,7 @@ def test_fingers_under_the_edge_need_room(light: Solution, top: float, room: flo
 
 
 def test_elsewhere_there_is_no_finger_to_squeeze(light: Solution) -> None:
-    beside = {"name": "stand", "box": [0.6, 0.4, 0.1], "position": [0.6, 1.0, 0.79]}
+    beside = {"name": "stand", "box": [0.6, 0.4, 0.1], "position": [0.6, 1.0, 0.84]}
     above = {"name": "roof", "box": [0.6, 0.4, 0.1], "position": [0.6, 0.0, 1.9]}
     assert not _of(_with(light, obstacles=[beside, above]), "fingers")
 
