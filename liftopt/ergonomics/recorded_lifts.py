@@ -1,7 +1,7 @@
 """How one person lifted: joint angles by the height of the wrist, as means and standard deviations over five lifts.
 
-One person, two hands on a box, an inertial suit; five lifts from 0.5 m to 1.1, 1.2, 1.2, 1.4 and 1.7 m. It is a trend and
-no norm: one person, one box, few lifts, the fewer the higher. Published or larger data take precedence.
+One person, two hands on a box, an inertial suit; five lifts from 0.5 m to 1.1, 1.2, 1.2, 1.4 and 1.7 m. It is a trend
+and no norm: one person, one box, few lifts, the fewer the higher. Published or larger data take precedence.
 """
 
 from __future__ import annotations
