@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -36,28 +35,13 @@ BETTER = 1e-6  # relative gain of the objective that counts
 FEWEST, MOST = 2, 200
 
 
-class Effort(NamedTuple):
-    """What a preset counts as effort: in words, and its unit in text, in a key and under a formula."""
-
-    of: str
-    unit: str
-    key: str
-    formula: str
-
-
-EFFORTS = {
-    "paper": Effort("squared joint torques", "N2 m2 s", "N2m2s", "∫ Σ τ² dt [N² m² s]"),
-    "natural": Effort("squared shares of the joints' torque limits", "s", "s", "∫ Σ (τ / limit)² dt [s]"),
-}
-
-
 @dataclass(frozen=True)
 class Point:
     """One compromise.
 
     Attributes:
         weights: of the first's and the second's effort.
-        efforts: the first's and the second's, as ``Front.effort`` says.
+        efforts: the first's and the second's effort, measured as ``effort_in`` their scenario.
         share: mean part of the vertical grasp force that the first carries.
         candidate: the lift, verified.
     """
@@ -85,11 +69,6 @@ class Front:
     points: tuple[Point, ...]
     dominated: tuple[Point, ...]
     missing: tuple[tuple[float, float], ...]
-
-    @property
-    def effort(self) -> Effort:
-        """What counts as effort."""
-        return EFFORTS[self.scenario.objective.preset]
 
 
 def pareto_front(
