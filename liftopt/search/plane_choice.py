@@ -1,0 +1,172 @@
+"""Planes between solids along a motion: which pairs get rows, on which side, and which of their points."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from liftopt.collocation.separating_planes import Body, PosePart, SeparatingPlanes, Separation
+from liftopt.search.solid_distances import SolidDistances, gaps
+from liftopt.search.team_solids import TeamSolids
+from liftopt.types import Array
+
+# A pair has rows at the times at which it is nearer than this, if it is too near at some time [m].
+NEAR = 0.15
+# Corners of a hull that lie so much farther along the normal than its nearest one get no row of their own [m]: in the
+# next round they may, if the body turns. Both ends of a capsule do.
+FARTHER = 0.03
+# The 26 directions to the faces, edges and corners of a cube.
+DIRECTIONS = np.array([d for d in product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
+DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
+# Where two solids overlap the direction that separates them is chosen for all times together: depth along it costs its
+# square in this unit [m], and a change of direction from one knot to the next 1 - cosine of the angle.
+DEPTH = 0.1
+# Rows of two bodies are made this many at a time, so that the next planes seldom need another structure.
+ROOM = 4
+
+
+@dataclass(frozen=True)
+class PlaneOptions:
+    """What planes ask for.
+
+    Attributes:
+        distance: least distance of solids [m].
+        avoided: pairs by number whose first choice of a side led nowhere: another one is taken.
+    """
+
+    distance: float
+    avoided: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True)
+class _Row:
+    normal: Array
+    one: Array
+    other: Array
+    distance: float
+    name: str
+    slack: float
+
+
+def choose_planes(
+    solids: TeamSolids,
+    parts: tuple[PosePart, ...],
+    found: SolidDistances,
+    pairs: npt.NDArray[np.int64],
+    options: PlaneOptions,
+    like: SeparatingPlanes | None = None,
+) -> SeparatingPlanes:
+    """Return planes that keep pairs apart, chosen by the distances at the knots of a motion.
+
+    Args:
+        solids: of the team.
+        parts: whose poses the problem may use.
+        found: distances at the knots, known below ``NEAR``.
+        pairs: numbers of the pairs that get rows.
+        options: what the planes ask for.
+        like: planes whose structure is kept where it is large enough.
+    """
+    knots = len(found.distance)
+    rows: dict[tuple[Body, Body], list[list[_Row]]] = defaultdict(lambda: [[] for _ in range(knots)])
+    for p in pairs:
+        normals = _normals(solids, found, int(p), options)
+        one, other = solids.ends[p]
+        between = rows[solids.bodies[one], solids.bodies[other]]
+        for k in np.flatnonzero(found.distance[:, p] < NEAR):
+            between[k] += _rows(solids, found, int(p), int(k), normals[k], options.distance)
+    known = {(s.one, s.other): s.rows for s in like.separations} if like else {}
+    order = sorted({*rows, *known})  # what is known and no longer near asks for nothing
+    made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in order)
+    used = {body.part for key in order for body in key}
+    return SeparatingPlanes(tuple(part for part in parts if part.part in used), made)
+
+
+def _separation(one: Body, other: Body, rows: list[list[_Row]], least: int) -> Separation:
+    most = max([least, *(len(at) for at in rows)])
+    m = -(-most // ROOM) * ROOM
+    shape = (len(rows), m)
+    normal, first, second = (np.zeros((*shape, 3)) for _ in range(3))
+    distance, names = np.zeros(shape), [[""] * m for _ in rows]
+    for k, at in enumerate(rows):
+        for j, row in enumerate(at):
+            normal[k, j], first[k, j], second[k, j] = row.normal, row.one, row.other
+            distance[k, j], names[k][j] = row.distance, row.name
+    return Separation(one, other, normal, first, second, distance, tuple(map(tuple, names)))
+
+
+def _rows(solids: TeamSolids, found: SolidDistances, p: int, k: int, normal: Array, distance: float) -> list[_Row]:
+    """Return the rows of a pair at a knot: each near point of the one against each near point of the other."""
+    s, t = solids.ends[p]
+    ones, others = _support(solids, found, s, k, normal), _support(solids, found, t, k, -normal)
+    least = distance + solids.radius[s] + solids.radius[t]
+    name = solids.pairs[p].told
+    rows = []
+    for i in ones:
+        for j in others:
+            value = float(normal @ (found.points[k, s, i] - found.points[k, t, j]))
+            rows.append(_Row(normal, solids.points[s, i], solids.points[t, j], float(least), name, value - least))
+    return rows
+
+
+def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: Array) -> list[int]:
+    """Return the corners of a hull that lie nearest against the normal."""
+    count = len(solids.solids[s].points)
+    along = found.points[k, s, :count] @ normal
+    reach = np.inf if solids.solids[s].kind == "capsule" else FARTHER
+    return [int(i) for i in np.flatnonzero(along <= along.min() + reach)]
+
+
+def _normals(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOptions) -> Array:
+    """Return a unit normal (K, 3) of a pair at every knot."""
+    distance, exact = found.distance[:, p], found.normal[:, p]
+    other = solids.ends[p, 1]
+    if solids.flat[other]:
+        return np.tile([0.0, 0.0, 1.0], (len(distance), 1))
+    apart = distance > 0.0
+    if apart.all() and p not in options.avoided:
+        return exact
+    directions = _directions(solids, found, p)
+    count = directions.shape[1]
+    along = [gaps(solids, found.points, directions[:, d, None], np.array([p])) for d in range(count)]
+    gap = np.concatenate(along, axis=1)
+    # Where solids are apart the direction between their nearest points is a candidate too, and the best.
+    directions = np.concatenate([directions, np.where(apart[:, None], exact, directions[:, 0])[:, None]], axis=1)
+    gap = np.concatenate([gap, np.where(apart, distance, -np.inf)[:, None]], axis=1)
+    cost = (np.minimum(gap - options.distance, 0.0) / DEPTH) ** 2 * (20.0 / max(1, len(distance) - 1))
+    cost = np.minimum(cost, 1e6)
+    first = _shortest(cost, directions)
+    if p in options.avoided:
+        chosen = directions[np.arange(len(first)), first]
+        deep = distance < options.distance
+        alike = np.einsum("kda,ka->kd", directions, chosen) > 0.5
+        cost = cost + 1e3 * (alike & deep[:, None])
+        first = _shortest(cost, directions)
+    return directions[np.arange(len(first)), first]
+
+
+def _directions(solids: TeamSolids, found: SolidDistances, p: int) -> Array:
+    """Return the 26 directions (K, 26, 3) in the axes of the pair's box, or in the world's where there is none."""
+    boxes = [s for s in solids.ends[p] if solids.solids[s].kind == "box"]
+    if not boxes:
+        return np.tile(DIRECTIONS, (len(found.distance), 1, 1))
+    s = boxes[-1]
+    axes = found.placements[:, s, :3, :3] @ solids.solids[s].T_joint_solid[:3, :3]
+    return np.asarray(np.einsum("kab,db->kda", axes, DIRECTIONS))
+
+
+def _shortest(cost: Array, directions: Array) -> npt.NDArray[np.int64]:
+    """Return the choice at every knot whose costs, with those of changing direction, are least in all."""
+    total, back = cost[0], []
+    for k in range(1, len(cost)):
+        change = 1.0 - directions[k - 1] @ directions[k].T
+        through = total[:, None] + change
+        back.append(through.argmin(axis=0))
+        total = through.min(axis=0) + cost[k]
+    path = [int(total.argmin())]
+    for choice in reversed(back):
+        path.append(int(choice[path[-1]]))
+    return np.array(path[::-1])
