@@ -79,11 +79,11 @@ def _jobs(
     """Return what measures each part; every one adds to ``rows`` or ``stages``."""
     from benchmarks import moco, rivals, solves, varied, whole
     from benchmarks.case import Case
-    from benchmarks.scenarios import table5
+    from benchmarks.scenarios import table5_paper
     from benchmarks.stages import profile
 
     quick, repeats = options.quick, 3 if options.quick else 10
-    case = Case.of(table5().scenario(), table5().ends)
+    case = Case.of(table5_paper().scenario(), table5_paper().ends)
 
     def add(*keys: str) -> Callable[[Row | tuple[Row, ...]], None]:
         def keep(found: Row | tuple[Row, ...]) -> None:

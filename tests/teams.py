@@ -29,6 +29,7 @@ TWO_PEOPLE = {
     },
     "object": {"name": "box", "mass": 8.0, "depth": 0.5, "width": 0.4, "height": 0.25},
     "task": {"standing_distance": 1.3, **TASK},
+    "objective": {"preset": "paper"},
 }
 TWO_ROBOTS = {
     "schema": 2,
@@ -48,6 +49,7 @@ TWO_ROBOTS = {
         "grasps": {"near": [0.2, -0.4, -0.02], "far": [0.2, 0.4, -0.02]},
     },
     "task": {"standing_distance": 1.75, **TASK},
+    "objective": {"preset": "paper"},
 }
 
 

@@ -41,11 +41,11 @@ def test_files_it_names_exist() -> None:
         assert (ROOT / name).exists(), name
 
 
-def test_papers_own_problem_is_spelled_as_the_command_takes_it() -> None:
+def test_the_papers_own_problem_is_a_shipped_one() -> None:
     page = (ROOT / "docs" / "concepts" / "method.md").read_text(encoding="utf-8")
-    entries = re.findall(r"--set\s+((?:objective|limits)\.\w+=[\d.]+)", page)
-    assert len(entries) == 3
-    scenario = load_scenario("table5", entries)
+    assert "table5_bare" in page
+    scenario = load_scenario("table5_bare")
+    assert [agent.weight for agent in scenario.agents.values()] == [1.0, 1.0]
     assert (scenario.objective.acceleration_weight, scenario.objective.force_weight) == (0.0, 0.0)
     assert scenario.limits.balance_tolerance == 1.0
 

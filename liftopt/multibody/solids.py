@@ -86,19 +86,16 @@ def solids_of_object(lifted: LiftedObject) -> tuple[Solid, ...]:
     return tuple(replace(solid, name="") for solid in found) if len(found) == 1 else found
 
 
-def standing_box(
-    name: str, size: tuple[float, float, float], position: tuple[float, float, float], yaw: float
-) -> Solid:
+def placed_box(name: str, size: tuple[float, float, float], position: tuple[float, float, float], yaw: float) -> Solid:
     """Return a box that stands in the world.
 
     Args:
         name: of the obstacle.
         size: along its axes x, y, z [m].
-        position: of the centre of its underside in the world [m].
+        position: of its centre in the world [m].
         yaw: about Z from the world's X [rad].
     """
-    x, y, z = position
-    return Solid(name, "", 0, translation(x, y, z + size[2] / 2.0) @ rotation_z(yaw), "box", size)
+    return Solid(name, "", 0, translation(*position) @ rotation_z(yaw), "box", size)
 
 
 def _solids(owner: str, urdf: str, model: pin.Model) -> tuple[Solid, ...]:

@@ -15,7 +15,7 @@ from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.person.human import HAND_UNDER_EDGE, Subject, human_agent
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL, sawyer_agent
-from liftopt.multibody.solids import Solid, standing_box
+from liftopt.multibody.solids import Solid, placed_box
 from liftopt.multibody.table import lifted_table
 from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.model import Scenario
@@ -93,7 +93,7 @@ def object_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> Lif
 def obstacles_of(scenario: Scenario) -> tuple[Solid, ...]:
     """Return the obstacles of a scenario as solids in the world; the floor is none of them."""
     return tuple(
-        standing_box(str(obstacle.name), obstacle.box, obstacle.position, math.radians(obstacle.yaw_deg))
+        placed_box(str(obstacle.name), obstacle.box, obstacle.position, math.radians(obstacle.yaw_deg))
         for obstacle in scenario.obstacles
     )
 

@@ -38,7 +38,7 @@ class Obstacle(Section):
         tuple[Length, Length, Length],
         Listed,
         entry(
-            "where the middle of its underside is in the world",
+            "where its centre is in the world",
             f"three numbers from {-FARTHEST:g} to {FARTHEST:g} m, [x, y, z]",
         ),
     ]

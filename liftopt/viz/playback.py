@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from scipy.spatial.transform import Rotation
 
+from liftopt.ergonomics.lift import subject_in
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
@@ -15,6 +17,9 @@ from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.base import base_of
+from liftopt.viz.holding import held_by_gripper, held_by_hand
+from liftopt.viz.scene_hand import RIGHT
+from liftopt.viz.who import robot_of
 
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
 
@@ -51,9 +56,11 @@ class Playback:
 
     Attributes:
         time: (K,) [s].
-        bodies: by joint name for what an agent moves, by its own name for the object.
+        bodies: by joint name for what an agent moves, by its own name for the object; hands and grippers
+            are bodies too.
         forces: by agent.
-        zero: (4, 4) T_world_body of every body while all joints are at zero.
+        zero: (4, 4) T_world_body in which what is drawn of a body is given: all joints at zero, or the
+            identity for the object, palms, fingers and grippers, whose parts are given in their own frames.
         joints: names of the bodies that each agent moves, by agent.
         bases: (4, 4) T_world_base by agent, of its feet or of its arm's base: X ahead, Z up.
     """
@@ -75,9 +82,20 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     Raises:
         InputError: the solution holds numbers that are not finite, or its time does not run forward.
     """
-    knots = solution.time
+    last = float(solution.time[-1])
+    return playback_at(solution, np.linspace(0.0, last, max(2, round(last * frame_rate) + 1)))
+
+
+def playback_at(solution: Solution, time: Array) -> Playback:
+    """Return the lift at ``time`` (K,) [s], as ``playback_of`` does.
+
+    Raises:
+        InputError: as ``playback_of``.
+    """
     _check(solution)
-    time = np.linspace(0.0, knots[-1], max(2, round(float(knots[-1]) * frame_rate) + 1))
+    knots, lifted = solution.time, solution.object
+    pose = motion_between(knots, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration, time)[0]
+    T_world_object = np.array([_object_placement(row).homogeneous for row in pose])
     bodies: dict[str, BodyTrack] = {}
     forces: dict[str, ForceTrack] = {}
     zero: dict[str, Array] = {}
@@ -86,18 +104,31 @@ def playback_of(solution: Solution, frame_rate: float = FRAME_RATE) -> Playback:
     for agent, track in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q = motion_between(knots, track.q, track.v, track.a, time)[0]
         placements = _placements(agent, q)
-        bodies |= {name: _track(list_) for name, list_ in placements.items()}
-        forces[agent.name] = _force(agent, track, knots, time, q)
-        zero |= {
-            name: list_[0].homogeneous for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()
-        }
-        joints[agent.name] = tuple(placements)
+        upright = {name: list_[0] for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()}
         bases[agent.name] = base_of(agent)
-    lifted = solution.object
-    pose = motion_between(knots, lifted.pose, lifted.pose_velocity, lifted.pose_acceleration, time)[0]
-    bodies[lifted.name] = _track([_object_placement(row) for row in pose])
+        holding = _holding(solution, track, bases[agent.name], placements, upright, T_world_object)
+        bodies |= {name: _track(list_) for name, list_ in (placements | holding).items()}
+        forces[agent.name] = _force(agent, track, knots, time, q)
+        zero |= upright | dict.fromkeys(holding, np.eye(4))
+        joints[agent.name] = (*placements, *holding)
+    bodies[lifted.name] = _track(T_world_object)
     zero[lifted.name] = np.eye(4)
     return Playback(time, bodies, forces, zero, joints, bases)
+
+
+def _holding(
+    solution: Solution, agent: AgentTrajectory, T_world_base: Array, placements: dict[str, Array],
+    upright: dict[str, Array], T_world_object: Array,
+) -> dict[str, Array]:  # fmt: skip
+    """Return T_world_body (K, 4, 4) of what an agent holds with, by body."""
+    lifted, last = solution.scenario.object, list(placements)[-1]
+    half = np.array([lifted.depth, lifted.width, lifted.height]) / 2.0
+    T_base_last = np.linalg.inv(T_world_base) @ upright[last]
+    if agent.kind == "person":
+        subject = subject_in(solution, agent.name)
+        return held_by_hand(f"{agent.name}_right", subject, RIGHT, T_base_last, placements[last], T_world_object, half)
+    length = robot_of(solution.scenario, agent).tool.length
+    return held_by_gripper(agent.name, length, T_base_last, placements[last], T_world_object, half)
 
 
 def _check(solution: Solution) -> None:
@@ -110,16 +141,16 @@ def _check(solution: Solution) -> None:
         raise InputError(name, NO_VALUE, "cannot be shown: the result's time does not run forward")
 
 
-def _placements(agent: Agent, q: Array) -> dict[str, list[pin.SE3]]:
-    """Return T_world_joint of every joint at each row of ``q`` (K, n)."""
+def _placements(agent: Agent, q: Array) -> dict[str, Array]:
+    """Return T_world_joint (K, 4, 4) of every joint at each row of ``q`` (K, n)."""
     model = agent.model
     data = model.createData()
     names = list(model.names)[1:]
-    placements: dict[str, list[pin.SE3]] = {name: [] for name in names}
-    for row in q:
+    placements = {name: np.zeros((len(q), 4, 4)) for name in names}
+    for k, row in enumerate(q):
         pin.forwardKinematics(model, data, row)
         for j, name in enumerate(names, start=1):
-            placements[name].append(data.oMi[j].copy())
+            placements[name][k] = data.oMi[j].homogeneous
     return placements
 
 
@@ -140,9 +171,9 @@ def _force(agent: Agent, track: AgentTrajectory, knots: Array, time: Array, q: A
     return ForceTrack(points, force)
 
 
-def _track(placements: list[pin.SE3]) -> BodyTrack:
-    position = np.array([placement.translation for placement in placements])
-    return BodyTrack(position, continuous(np.array([pin.Quaternion(item.rotation).coeffs() for item in placements])))
+def _track(placements: Array) -> BodyTrack:
+    turns = Rotation.from_matrix(placements[:, :3, :3]).as_quat()
+    return BodyTrack(np.array(placements[:, :3, 3]), continuous(turns))
 
 
 def continuous(quaternions: Array) -> Array:

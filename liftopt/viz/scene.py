@@ -16,10 +16,12 @@ from liftopt.types import Array
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
 from liftopt.viz.scene_commands import Command, clip, place, set_object
+from liftopt.viz.scene_gripper import gripper_parts
+from liftopt.viz.scene_hand import RIGHT
 from liftopt.viz.scene_mesh import Mesh, Ring, block, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
-from liftopt.viz.scene_person import SHIRT, person_parts
-from liftopt.viz.scene_sawyer import gripper_parts, sawyer_parts
+from liftopt.viz.scene_person import SHIRT, hand_parts, person_parts
+from liftopt.viz.scene_sawyer import sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
 from liftopt.viz.who import colour_of, robot_of
@@ -118,15 +120,16 @@ def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
     """Return the parts of one agent, where it stands."""
     solution, world_base = cast.solution, cast.playback.bases[agent.name]
     if agent.kind == "person":
-        figure = person_parts(agent.name, subject_in(solution, agent.name), _shirt(cast, agent))
-        return [part.placed(world_base) for part in figure]
+        subject = subject_in(solution, agent.name)
+        figure = [part.placed(world_base) for part in person_parts(agent.name, subject, _shirt(cast, agent))]
+        return figure + hand_parts(f"{agent.name}_right", subject, RIGHT)
     if cast.sawyer is None:
         arm = sawyer_parts(agent.name, world_base)
     else:
         arm = sawyer_mesh_parts(cast.sawyer, agent.name, world_base)
     if not who_is(agent, solution.agents).is_alone:  # on the ground each needs names of its own
         arm = [replace(part, name=f"{agent.name}_{part.name}") if part.body == GROUND else part for part in arm]
-    return [*arm, *gripper_parts(agent.name, world_base, robot_of(solution.scenario, agent).tool.length)]
+    return [*arm, *gripper_parts(agent.name, robot_of(solution.scenario, agent).tool.length)]
 
 
 def _shirt(cast: Cast, person: AgentTrajectory) -> Colour:

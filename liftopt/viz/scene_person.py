@@ -5,8 +5,6 @@ Lengths, breadths and girths are the subject's; the fractions of them that shape
 
 from __future__ import annotations
 
-import numpy as np
-
 from liftopt.multibody.person.anthropometry import (
     HEEL_BEHIND_ANKLE,
     HIP_JOINT_SPREAD,
@@ -16,8 +14,17 @@ from liftopt.multibody.person.anthropometry import (
     link_lengths,
 )
 from liftopt.multibody.person.subject import Subject
+from liftopt.viz.scene_hand import (
+    LEFT,
+    RIGHT,
+    T_person_palm,
+    bone_meshes,
+    hand_digits,
+    palm_mesh,
+    resting_hand,
+)
 from liftopt.viz.scene_head import head_parts
-from liftopt.viz.scene_mesh import Mesh, Ring, capsule, merged, tube
+from liftopt.viz.scene_mesh import Mesh, Ring, tube
 from liftopt.viz.scene_part import Colour, Part
 
 SKIN: Colour = (0.86, 0.66, 0.53)
@@ -25,7 +32,6 @@ SHIRT: Colour = (0.16, 0.40, 0.66)
 TROUSERS: Colour = (0.22, 0.25, 0.32)
 SHOES: Colour = (0.10, 0.10, 0.12)
 SOLES: Colour = (0.80, 0.80, 0.80)
-LEFT, RIGHT = 1.0, -1.0
 TO_SIDE = (0.0, 1.0, 0.0)
 # Stands in for the clothes, and for girths that ANSUR II measures at their largest [fractions of a radius].
 SLACK = 1.06
@@ -34,28 +40,33 @@ SLACK = 1.06
 def person_parts(name: str, subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
     """Return the subject upright at the zero pose: feet at the origin, facing +X, arms hanging, palms forward.
 
-    Legs and pelvis are on joint GT3, the trunk with head and resting left arm on Q3, the right arm on Q6 (upper arm),
-    Q8 (forearm) and Q10 (hand), each called after the person: ``human_Q3``.
+    Legs and pelvis are on joint GT3, the trunk with head and the free left arm, hand included, on Q3, the right arm on
+    Q6 (upper arm) and Q8 (forearm), each called after the person: ``human_Q3``. The hand that holds is not in it.
     """
-    right = _arm(subject, RIGHT)
-    left = _arm(subject, LEFT)
     trunk = f"{name}_Q3"
     parts = [
         *_legs(f"{name}_GT3", subject),
         Part(trunk, "trunk", shirt, _trunk(subject)),
         *head_parts(subject, trunk, SKIN),
     ]
-    for arm, bodies, side in (
-        (left, (trunk,) * 3, "left"),
-        (right, (f"{name}_Q6", f"{name}_Q8", f"{name}_Q10"), "right"),
-    ):
-        sleeve, upper, forearm, hand = arm
+    for side, bodies, which in ((LEFT, (trunk, trunk), "left"), (RIGHT, (f"{name}_Q6", f"{name}_Q8"), "right")):
+        sleeve, upper, forearm = _arm(subject, side)
         parts += [
-            Part(bodies[0], f"{side}_sleeve", shirt, sleeve),
-            Part(bodies[0], f"{side}_upper_arm", SKIN, upper),
-            Part(bodies[1], f"{side}_forearm", SKIN, forearm),
-            Part(bodies[2], f"{side}_hand", SKIN, hand),
+            Part(bodies[0], f"{which}_sleeve", shirt, sleeve),
+            Part(bodies[0], f"{which}_upper_arm", SKIN, upper),
+            Part(bodies[1], f"{which}_forearm", SKIN, forearm),
         ]
+    hand = resting_hand(subject, LEFT).seen_from(T_person_palm(subject, LEFT))
+    parts.append(Part(trunk, "left_hand", SKIN, hand))
+    return parts
+
+
+def hand_parts(hand: str, subject: Subject, side: float) -> list[Part]:
+    """Return palm and bones of a hand that holds, each in its own frame; bodies begin with ``hand``, "human_right"."""
+    parts = [Part(f"{hand}_palm", "palm", SKIN, palm_mesh(subject, side))]
+    for digit in hand_digits(subject, side):
+        for j, mesh in enumerate(bone_meshes(digit), start=1):
+            parts.append(Part(f"{hand}_{digit.name}_{j}", "bone", SKIN, mesh))
     return parts
 
 
@@ -130,8 +141,8 @@ def _trunk(subject: Subject) -> Mesh:
     return tube(rings, TO_SIDE, round_start=0.015)
 
 
-def _arm(subject: Subject, side: float) -> tuple[Mesh, Mesh, Mesh, Mesh]:
-    """Return sleeve, upper arm, forearm and hand of a hanging arm, the palm forward."""
+def _arm(subject: Subject, side: float) -> tuple[Mesh, Mesh, Mesh]:
+    """Return sleeve, upper arm and forearm of a hanging arm."""
     lengths = link_lengths(subject)
     y, shoulder = side * lengths.l3, lengths.l1 + lengths.l2
     elbow, wrist = shoulder - lengths.l4, shoulder - lengths.l4 - lengths.l5
@@ -151,31 +162,4 @@ def _arm(subject: Subject, side: float) -> tuple[Mesh, Mesh, Mesh, Mesh]:
         tube(sleeve, TO_SIDE, round_start=1.0 * biceps),
         tube(upper, TO_SIDE, round_end=0.8 * forearm),
         tube(lower, TO_SIDE, round_start=0.8 * forearm, round_end=0.015),
-        _hand(subject, side, y, wrist),
     )
-
-
-def _hand(subject: Subject, side: float, y: float, wrist: float) -> Mesh:
-    """Return palm, four bent fingers and a thumb; the palm faces +X, the thumb points away from the body."""
-    knuckles, breadth = link_lengths(subject).l6, dimension(subject, "handbreadth") / 2.0
-    thin = girth_radius(subject, "wristcircumference")
-    palm = [
-        Ring((0.0, y, wrist + 0.01), 0.98 * thin, 0.80 * thin),
-        Ring((0.0, y, wrist - 0.35 * knuckles), 0.86 * breadth, 0.017, 2.6),
-        Ring((0.002, y, wrist - knuckles), breadth, 0.014, 2.8),
-    ]
-    meshes = [tube(palm, TO_SIDE, round_start=0.01, round_end=0.012)]
-    for i, share in enumerate((0.93, 1.0, 0.95, 0.78)):  # index to little finger
-        offset = y + side * (0.75 - 0.5 * i) * breadth
-        bones = np.array([0.50, 0.30, 0.24]) * knuckles * share
-        point, bend = np.array([0.002, offset, wrist - knuckles]), 0.0
-        for bone, turn in zip(bones, (0.35, 0.55, 0.45), strict=True):
-            bend += turn
-            tip = point + bone * np.array([np.sin(bend), 0.0, -np.cos(bend)])
-            meshes.append(capsule(point, tip, 0.0085, 0.0075))
-            point = tip
-    root = np.array([0.006, y + side * 0.75 * breadth, wrist - 0.30 * knuckles])
-    middle = root + 0.42 * knuckles * np.array([0.35, side * 0.62, -0.70])
-    meshes.append(capsule(root, middle, 0.0125, 0.0105))
-    meshes.append(capsule(middle, middle + 0.34 * knuckles * np.array([0.40, side * 0.22, -0.88]), 0.0105, 0.008))
-    return merged(meshes)

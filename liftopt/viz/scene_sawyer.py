@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from liftopt.multibody.robots.sawyer_description import (
-    FLANGE_IN_LAST_LINK,
     HEAD_IN_FIRST_LINK,
     JOINTS,
     described_frames,
@@ -21,7 +20,6 @@ from liftopt.viz.scene_part import GROUND, Colour, Part
 RED: Colour = (0.62, 0.07, 0.08)
 GREY: Colour = (0.29, 0.29, 0.30)
 BLACK: Colour = (0.07, 0.07, 0.08)
-SILVER: Colour = (0.62, 0.63, 0.65)
 SCREEN: Colour = (0.13, 0.30, 0.42)
 WHITE: Colour = (0.95, 0.96, 0.97)
 TO_X = (1.0, 0.0, 0.0)
@@ -143,31 +141,4 @@ def _head() -> list[tuple[str, Colour, Mesh]]:
         ("screen", SCREEN, glass),
         ("eyes", WHITE, merged(eyes)),
         ("pupils", BLACK, merged(pupils)),
-    ]
-
-
-def gripper_parts(name: str, world_base: Array, length: float) -> list[Part]:
-    """Return a two-finger gripper whose tips meet at the grasp point; nothing for the bare flange.
-
-    Args:
-        name: that the robot's joints begin with.
-        world_base: (4, 4) T_world_base of the manufacturer's base frame.
-        length: from the flange to the grasp point, along the last joint's axis [m].
-    """
-    if length <= 0.0:
-        return []
-    flange = FLANGE_IN_LAST_LINK[2]
-    tip, palm = flange + length, flange + 0.5 * length
-    body = [cylinder((0.0, 0.0, 0.018), (0.0, 0.0, flange + 0.08 * length), 0.038)]
-    body.append(block((0.0, 0.0, 0.5 * (flange + palm)), (0.055, 0.095, palm - flange), edge=0.012))
-    fingers = []
-    for side in (-1.0, 1.0):
-        bend = (0.0, side * 0.030, palm + 0.55 * (tip - palm))
-        fingers.append(capsule((0.0, side * 0.036, palm), bend, 0.010))
-        fingers.append(capsule(bend, (0.0, side * 0.012, tip - 0.006), 0.010, 0.008))
-    hand = world_base @ described_frames(np.zeros(len(JOINTS)))[-1]
-    last = f"{name}_Q{len(JOINTS)}"
-    return [
-        Part(last, "gripper", BLACK, merged(body)).placed(hand),
-        Part(last, "fingers", SILVER, merged(fingers)).placed(hand),
     ]

@@ -6,7 +6,7 @@ from liftopt.multibody.dh import translation
 from liftopt.viz.scene_commands import Command, place, set_object
 from liftopt.viz.scene_mesh import block
 
-FLOOR = (0.60, 0.62, 0.64)
+FLOOR = (0.70, 0.72, 0.74)
 FLOOR_SIZE, FLOOR_THICKNESS = 20.0, 0.02  # [m]
 SUN = (-1.2, -3.0, 5.0)  # [m]: shines from there to the origin
 

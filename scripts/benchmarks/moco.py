@@ -1,7 +1,7 @@
 """The same lift in OpenSim Moco, by direct collocation with IPOPT, as who knows Moco would set it up.
 
 The same chains, inertias, torque, joint and speed limits, grasps, gravity, poses and rest at the ends, mesh, objective
-and start. Moco's best for the default lift: implicit dynamics, controls in Nm, Posa's method for the grasps, forward
+and start. Moco's best for the paper's lift: implicit dynamics, controls in Nm, Posa's method for the grasps, forward
 differences, an objective of order 1, Moco's 1e-3 for both tolerances, all cores. Bordalba's method takes several
 times as long an iteration. The cap on the grasp force and the half-space in front of the body, which Moco has no word
 for, are left out; whether its solution keeps to them is measured.

@@ -14,7 +14,7 @@ import numpy as np
 import opensim as osim
 from scipy.spatial.transform import Rotation
 
-# The default lift's objective is then of order 1, as Moco advises; with ten times as much it takes a fifth more
+# The paper's lift's objective is then of order 1, as Moco advises; with ten times as much it takes a fifth more
 # iterations, with a hundred times as much two fifths.
 OBJECTIVE_SCALING = 0.001
 LIGHTEST = 1e-6  # [kg], [kg m^2]

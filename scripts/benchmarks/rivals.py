@@ -17,7 +17,7 @@ from benchmarks import snopt
 from benchmarks.beside import Beside, said
 from benchmarks.case import TOLERANCE, Case, repeat
 from benchmarks.goals import Row
-from benchmarks.scenarios import table5
+from benchmarks.scenarios import table5_paper
 from benchmarks.solves import counts, spent
 from liftopt.collocation.codegen import kernel_cache
 from liftopt.collocation.motion import motion_at
@@ -28,7 +28,7 @@ PAPER, PAPER_INTERVALS = ("limits.balance_tolerance=1",), 7
 
 def virtual_machine(repeats: int) -> Row:
     """Time IPOPT on the same problem with no kernel compiled."""
-    varied = table5()
+    varied = table5_paper()
     with _no_compiler():
         case = Case.of(varied.scenario(), varied.ends)
         solver = case.solver("ipopt")
@@ -38,14 +38,14 @@ def virtual_machine(repeats: int) -> Row:
 
 
 def through_snopt(seconds: float) -> tuple[Row, ...]:
-    """Time SNOPT at the paper's size from the zero guess and from our start, and on the default lift from our start.
+    """Time SNOPT at the paper's size from the zero guess and from our start, and on the paper's lift from our start.
 
     The paper has 224 unknowns and tolerates 1 N and 1 Nm in the balance; 7 intervals come nearest to it. Its 898
     nonlinear rows are not listed one by one: ours are fewer.
     """
     if importlib.util.find_spec("pydrake") is None:
         return (Row(None, "skipped: Drake is not installed; pip install drake"),) * 3
-    lift = table5()
+    lift = table5_paper()
     small = Case.of(lift.scenario(*PAPER), lift.ends, PAPER_INTERVALS)
     full = Case.of(lift.scenario(), lift.ends)
     return tuple(_snopt_beside_ours(case, seconds) for case in (small.from_zero(), small, full))

@@ -1,4 +1,4 @@
-"""Single solves of the default lift: cold from a given start, warm from a neighbouring optimum, on finer meshes."""
+"""Single solves of the paper's lift: cold from a given start, warm from a neighbouring optimum, on finer meshes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.case import PATIENCE, Case, Timing, measure, repeat
 from benchmarks.goals import Row
-from benchmarks.scenarios import Varied, table5, varied_scenarios
+from benchmarks.scenarios import Varied, table5_paper, varied_scenarios
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import SolverResult
@@ -99,7 +99,7 @@ def scaling(repeats: int, meshes: tuple[int, ...] = MESHES, solvers: tuple[str, 
     Where a solve goes on its way to an optimum depends on the mesh, so several lifts are taken together. Beside a solve
     from the start on the mesh itself, the banded one is timed from a coarse mesh to ever finer ones.
     """
-    lifts = (table5(), *varied_scenarios()[: SCALED - 1])
+    lifts = (table5_paper(), *varied_scenarios()[: SCALED - 1])
     details: dict[str, Any] = {"N": list(meshes), "lifts": len(lifts)}
     for name in solvers:
         times, per, failed = [], [], []

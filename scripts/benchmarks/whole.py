@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.case import measure, repeat
 from benchmarks.goals import Row
-from benchmarks.scenarios import table5
+from benchmarks.scenarios import table5_paper
 from liftopt.search.cache import SolverCache
 from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
@@ -36,10 +36,10 @@ print(time.perf_counter() - began, usage.ru_utime + usage.ru_stime, usage.ru_max
 def in_process(name: str, starts: int, repeats: int) -> Row:
     """Time a lift, verified, in a process that has lifted before and keeps its solvers."""
     overrides, cache = [f"solver.name={name}", f"solver.starts={starts}"], SolverCache()
-    scenario = table5().scenario(*overrides, "solver.tries=0", "solver.workers=1")
+    scenario = table5_paper().scenario(*overrides, "solver.tries=0", "solver.workers=1")
     timing, solution = repeat(repeats, solve, scenario, cache=cache)
     alone, _ = measure(1, solve, scenario)
-    by_default = table5().scenario(*overrides)
+    by_default = table5_paper().scenario(*overrides)
     searched, _ = repeat(repeats, solve, by_default, cache=cache)
     note = (
         f"{name}, solver.tries=0; with nothing kept from the lift before: {1e3 * alone.median:.0f} ms; "
@@ -54,7 +54,7 @@ def fresh_process(repeats: int, *overrides: str) -> tuple[Row, Row]:
     """Time the command, from its call to its exit, and take the most memory that it held."""
     times, cpu, memory, status = [], [], [], 0.0
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "liftopt", "solve", "table5", "--out", str(Path(folder) / "result")]
+        command = [sys.executable, "-m", "liftopt", "solve", "table5_paper", "--out", str(Path(folder) / "result")]
         command += [word for override in overrides for word in ("--set", override)]
         for _ in range(repeats):
             launch = [sys.executable, "-I", "-S", "-c", LAUNCHER, *command]
@@ -64,7 +64,7 @@ def fresh_process(repeats: int, *overrides: str) -> tuple[Row, Row]:
             times.append(1e3 * wall)
             cpu.append(1e3 * busy)
             memory.append(kilobytes / 1e3)
-    note = " ".join(["liftopt solve table5", *(f"--set {override}" for override in overrides)])
+    note = " ".join(["liftopt solve table5_paper", *(f"--set {override}" for override in overrides)])
     if status:
         note = f"exit status {os.waitstatus_to_exitcode(int(status))}; {note}"
     details = {"cpu_median_ms": float(np.median(cpu)), "least_ms": min(times), "repeats": repeats}
@@ -95,7 +95,7 @@ def _cache() -> SolverCache:
 def _half(seed: int, starts: int) -> float:
     """Return the objective of the best of some starts; in a worker."""
     overrides = ["solver.name=banded", "solver.workers=1", f"solver.starts={starts}", f"solver.seed={seed}"]
-    scenario = table5().scenario(*overrides)
+    scenario = table5_paper().scenario(*overrides)
     solution = solve(scenario, cache=_cache())
     return solution.objective if solution.solved else float("inf")
 

@@ -20,7 +20,7 @@ STILL = ("task.end.height=0.92", "duration=10")
 
 
 def _problem(*overrides: str) -> Problem:
-    scenario = load_scenario("table5", overrides)
+    scenario = load_scenario("table5_paper", overrides)
     return Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), RestToRestSpline(N).mesh())
 
 

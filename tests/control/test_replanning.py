@@ -21,7 +21,7 @@ BASE = ("solver.name=banded", "solver.starts=2")
 
 @pytest.fixture(scope="module")
 def scenario() -> Scenario:
-    return load_scenario("table5", BASE)
+    return load_scenario("table5_paper", BASE)
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ CHEAP = ("solver.intervals=10", "solver.starts=1")
 
 @pytest.fixture(scope="module")
 def solution(solved: Callable[..., Any]) -> Any:
-    return solved("table5", *CHEAP).solution
+    return solved("table5_paper", *CHEAP).solution
 
 
 def test_energy_is_conserved_but_for_an_error_of_fourth_order_in_the_quadrature(solution):
@@ -35,7 +35,7 @@ def test_the_object_gains_its_weight_times_the_height_it_is_lifted(solution):
 
 def test_what_the_transcription_leaves_shrinks_with_the_mesh(solution, solved):
     """At second order, which from N = 40 to 80 is a factor of 4; on 10 intervals closure is too wide between knots."""
-    fine, finest = (solved("table5", f"solver.intervals={n}", "solver.starts=1").solution for n in (40, 80))
+    fine, finest = (solved("table5_paper", f"solver.intervals={n}", "solver.starts=1").solution for n in (40, 80))
     assert (solution.intervals, fine.intervals, finest.intervals) == (20, 40, 80)
     assert unexplained(energy_books(fine, 2)) < unexplained(energy_books(solution, 2)) / 2
     assert unexplained(energy_books(finest, 2)) < unexplained(energy_books(fine, 2)) / 4

@@ -21,7 +21,7 @@ STATES = 5
 
 @pytest.fixture(scope="module")
 def solution(solved: Callable[..., Any]) -> Any:
-    return solved("table5", *CHEAP).solution
+    return solved("table5_paper", *CHEAP).solution
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def study(solution: Any) -> MeshStudy:
 
 @pytest.fixture(scope="module")
 def still(solved: Callable[..., Any]) -> MeshStudy:
-    return mesh_study(solved("table5", *CHEAP, "task.rest=acceleration").solution, (6, 12))
+    return mesh_study(solved("table5_paper", *CHEAP, "task.rest=acceleration").solution, (6, 12))
 
 
 def test_equations_are_those_of_pinocchio_in_double_precision(models):

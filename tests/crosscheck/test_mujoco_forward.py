@@ -18,7 +18,7 @@ CHEAP = ("solver.intervals=10", "solver.starts=1")
 @pytest.fixture(scope="module")
 def solution(solved: Callable[..., Any]) -> Any:
     pytest.importorskip("mujoco", minversion="3.7", reason="mujoco is in the extra 'crosscheck'")
-    return solved("table5", *CHEAP).solution
+    return solved("table5_paper", *CHEAP).solution
 
 
 @pytest.fixture(scope="module")

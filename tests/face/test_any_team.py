@@ -7,6 +7,7 @@ are evaluated by CasADi's virtual machine, which takes less time than compiling 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -124,6 +125,9 @@ def test_the_report_and_the_playback_tell_everybody_by_name(
             assert f'"{name}"' in pages[1]
         else:
             assert f"<h2>{kind.capitalize()}</h2>" in pages[0]
+    lead = re.findall(r'<p class="lead">(.*?)</p>', pages[0], re.DOTALL)[0]
+    assert ("together" in lead) == (len(kinds) > 1)
+    assert re.search(r"\blifts? a\b", lead)[0] == ("lift a" if len(kinds) > 1 else "lifts a")
     for page in pages:
         assert page.rstrip().endswith("</html>")
 

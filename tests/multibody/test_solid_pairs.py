@@ -11,14 +11,14 @@ import pytest
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.subject import Sex, Subject
 from liftopt.multibody.solid_pairs import grasping_joint, solid_pairs
-from liftopt.multibody.solids import solids_of, standing_box
+from liftopt.multibody.solids import placed_box, solids_of
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 
 TEAMS = Path(__file__).parents[1] / "scenario" / "teams"
 TABLE5 = load_scenario()
 AGENTS = agents_of(TABLE5)
-SHELF = standing_box("shelf", (0.4, 1.2, 0.1), (0.6, 0.2, 0.5), 0.0)
+SHELF = placed_box("shelf", (0.4, 1.2, 0.1), (0.6, 0.2, 0.5), 0.0)
 PAIRS = solid_pairs(AGENTS, object_of(TABLE5), (SHELF,))
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from liftopt.errors import ModelError
 from liftopt.multibody.agent import Agent
-from liftopt.multibody.solids import FLOOR, Solid, solids_of, solids_of_object, standing_box
+from liftopt.multibody.solids import FLOOR, Solid, placed_box, solids_of, solids_of_object
 from liftopt.scenario.build import agents_of, object_of, obstacles_of
 from liftopt.scenario.model import load_scenario
 
@@ -100,10 +100,10 @@ def test_names_are_readable() -> None:
     assert "gripper of robot" in {solid.told for solid in solids_of(AGENTS["robot"])}
 
 
-def test_an_obstacle_stands_on_the_middle_of_its_underside() -> None:
-    shelf = standing_box("shelf", (0.4, 1.2, 0.1), (0.6, 0.2, 0.5), np.pi / 2)
+def test_an_obstacle_is_placed_by_its_centre() -> None:
+    shelf = placed_box("shelf", (0.4, 1.2, 0.1), (0.6, 0.2, 0.5), np.pi / 2)
     low, high = shelf.points.min(axis=0), shelf.points.max(axis=0)
-    np.testing.assert_allclose([low, high], [[0.0, 0.0, 0.5], [1.2, 0.4, 0.6]], atol=1e-12)
+    np.testing.assert_allclose([low, high], [[0.0, 0.0, 0.45], [1.2, 0.4, 0.55]], atol=1e-12)
     (made,) = obstacles_of(
         TABLE5.replace({"obstacles": [{"box": [0.4, 1.2, 0.1], "position": [0.6, 0.2, 0.5], "yaw_deg": 90.0}]})
     )

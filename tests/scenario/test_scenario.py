@@ -88,12 +88,16 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
     }
 
 
-def test_shipped_scenarios_differ_in_the_reading_of_table_5_only() -> None:
-    assert shipped_scenarios() == ("table5", "table5_free", "table5_near")
+def test_shipped_scenarios_differ_in_the_reading_of_table_5_and_in_the_objective_only() -> None:
+    assert shipped_scenarios() == ("table5", "table5_bare", "table5_free", "table5_near", "table5_paper")
     assert load_scenario("table5_near") == changed("task.standing_distance=1.70", "name=table5_near")
     free = ["task.start.human_distance=free", "task.end.human_distance=free", "name=table5_free"]
     assert load_scenario("table5_free") == changed(*free)
     assert load_scenario("table5_free").task.start.human_distance is None
+    paper = changed("objective.preset=paper", "limits.clearance=off", "name=table5_paper")
+    assert load_scenario("table5_paper") == paper
+    bare = {"objective.acceleration_weight": 0.0, "objective.force_weight": 0.0, "limits.balance_tolerance": 1.0}
+    assert load_scenario("table5_bare") == paper.replace({**bare, "name": "table5_bare"})
 
 
 def _required_only() -> dict[str, Any]:
@@ -259,7 +263,10 @@ def test_unreadable_paths_are_one_clear_error(tmp_path: Path) -> None:
     for path, message in [
         (tmp_path, "is not a file"),
         (tmp_path / "none.toml", "no such file, nor a shipped scenario"),
-        ("tabel5", r"no such file, nor a shipped scenario \(table5, table5_free, table5_near\)"),
+        (
+            "tabel5",
+            r"no such file, nor a shipped scenario \(table5, table5_bare, table5_free, table5_near, table5_paper\)",
+        ),
         ("/dev/zero", "is not a file"),
         ("x" * 5000, "cannot be read: File name too long"),
         ("a\0b", "cannot be read"),

@@ -114,7 +114,7 @@ def test_a_rival_is_compared_with_ours_on_its_own_problem_and_not_where_it_did_n
 
 def test_ours_beside_a_rival_has_the_papers_size_its_guess_and_its_slack() -> None:
     beside, rivals, case = _module("beside"), _module("rivals"), _module("case")
-    lift = _module("scenarios").table5()
+    lift = _module("scenarios").table5_paper()
     small = case.Case.of(lift.scenario(*rivals.PAPER), lift.ends, rivals.PAPER_INTERVALS).from_zero()
     # 8 free control points of 17 + 6 coordinates, 8 knots of 6 force components; the paper has 224.
     assert small.problem.layout.n_x == 232
@@ -132,7 +132,7 @@ def test_ours_beside_a_rival_has_the_papers_size_its_guess_and_its_slack() -> No
 def test_moco_is_told_the_lift_and_what_comes_back_is_measured_on_our_models() -> None:
     """Our own optimum, written as Moco's answer would be: Pinocchio's torques and the forces that the solver found."""
     moco, path, case = _module("moco"), _module("moco_path"), _module("case")
-    lift = _module("scenarios").table5()
+    lift = _module("scenarios").table5_paper()
     given = case.Case.of(lift.scenario(), lift.ends)
     solved = given.solve(given.solver("banded"))
     told = moco.describe(dataclasses.replace(given, start=solved.x))

@@ -43,7 +43,7 @@ def _assert_same(one: Solution, other: Solution) -> None:
 @pytest.mark.parametrize("case", CASES)
 def test_a_machine_that_is_hundreds_of_times_slower_finds_the_same(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its clock goes on by a second whenever it is looked at, so that this machine's speed does not count."""
-    scenario = load_scenario("table5", CASES[case])
+    scenario = load_scenario("table5_paper", CASES[case])
     idle = solve(scenario)
     assert idle.solved == (case == "solved")
     clock = itertools.count()
@@ -68,7 +68,9 @@ def test_where_time_cuts_the_search_short_the_solution_says_so_and_where(
     stage: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Time to finish what was found is kept, and the estimate of the error comes after the solution."""
-    solution = _cut(load_scenario("table5", SMALL), stage, monkeypatch, 0.8 if stage.startswith("varying") else 0.95)
+    solution = _cut(
+        load_scenario("table5_paper", SMALL), stage, monkeypatch, 0.8 if stage.startswith("varying") else 0.95
+    )
     assert solution.solved == (stage != "solving on 16 intervals")
     words = f"the time limit of 3600 s cut the search short ({stage}"
     (note,) = (note for note in solution.notes if "time limit" in note)
@@ -80,13 +82,13 @@ def test_where_time_cuts_the_search_short_the_solution_says_so_and_where(
 
 @pytest.mark.parametrize("stage", ["postures at both ends", "looking for what is in the way"])
 def test_a_verdict_that_time_cut_short_is_told_as_such(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    solution = _cut(load_scenario("table5", CASES["too heavy and too fast"]), stage, monkeypatch)
+    solution = _cut(load_scenario("table5_paper", CASES["too heavy and too fast"]), stage, monkeypatch)
     assert not solution.solved
     assert f"the time limit of 3600 s cut the search short ({stage}" in solution.status
 
 
 def test_no_time_at_all_is_told_and_the_best_iterate_is_finite() -> None:
-    session = Session(load_scenario("table5", SMALL), SolverCache())
+    session = Session(load_scenario("table5_paper", SMALL), SolverCache())
     session.limit = Deadline.after(0.0)
     solution = explain(session, find_lift(session))
     assert solution.status.startswith("not converged (time limit of 3600 s reached)")
@@ -112,7 +114,7 @@ def test_an_unsolvable_lift_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> N
 
     for kind in spent:
         monkeypatch.setattr(kind, "solve", counted(kind))
-    solution = solve(load_scenario("table5", ["duration=0.28", "object.mass=10", "solver.time_limit=3600"]))
+    solution = solve(load_scenario("table5_paper", ["duration=0.28", "object.mass=10", "solver.time_limit=3600"]))
     assert not solution.solved and solution.reasons
     # At 0.8 and 8 ms on an idle processor of 2023: 12 s of one, shared by two workers for the most part.
     assert spent[Banded] < 13e3 and spent[Ipopt] < 310

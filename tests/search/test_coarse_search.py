@@ -24,7 +24,9 @@ from liftopt.search.variations import TURN
 
 
 def _session(*overrides: str) -> tuple[Session, InitialGuessSet]:
-    session = Session(load_scenario("table5_near", overrides), SolverCache())
+    session = Session(
+        load_scenario("table5_near", ["objective.preset=paper", "limits.clearance=off", *overrides]), SolverCache()
+    )
     guesses = initial_guesses(session.problem(session.spline), 12, 0, NEVER, None, session.postures)
     assert guesses is not None
     return session, guesses

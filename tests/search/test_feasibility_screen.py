@@ -22,7 +22,7 @@ N = 20
 
 
 def _problem(*overrides: str) -> Problem:
-    scenario = load_scenario("table5", overrides)
+    scenario = load_scenario("table5_paper", overrides)
     return Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), motions_of(scenario, N).mesh())
 
 

@@ -46,7 +46,7 @@ def _cache() -> SolverCache:
 
 @cache
 def _solution(*overrides: str) -> Solution:
-    return solve(load_scenario("table5", [*BANDED, *overrides]), cache=_cache())
+    return solve(load_scenario("table5_paper", [*BANDED, *overrides]), cache=_cache())
 
 
 def _infeasible(session: Session, start: InitialGuess | None = None) -> Found:
@@ -63,7 +63,7 @@ def _value(solution: Solution, *keys: str) -> float:
 
 def _farthest(height: float) -> float:
     """Return the largest distance of feet and base at which the robot's hand gets to 0.85 m ahead of the feet."""
-    robot = agent_of(load_scenario("table5", FAR), "robot")
+    robot = agent_of(load_scenario("table5_paper", FAR), "robot")
     model, limits = robot.reduced(), robot.limits
     data, frame = model.createData(), model.getFrameId(robot.grasp_frame)
 
@@ -115,7 +115,7 @@ def test_an_object_too_heavy_for_two_grasps_is_to_weigh_what_they_hold() -> None
 
 def test_a_lift_too_short_names_joints_limits_and_times_and_is_to_last_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 2 m/s, 0.5 m take 0.26 s with 20 intervals; 0.27 s leave that speed, and torques and times are named."""
-    longer = adjustables(load_scenario("table5"))[0]
+    longer = adjustables(load_scenario("table5_paper"))[0]
     monkeypatch.setattr(suggested_changes, "adjustables", lambda scenario: [longer])
     solution = _solution(*FAST)
     assert solution.status.startswith("infeasible: ")
@@ -146,7 +146,7 @@ def test_each_suggested_change_leads_to_a_verified_lift_and_is_told(overrides: t
 
 
 def test_no_work_or_no_time_no_suggested_change_and_the_scenario_stays_as_it_is() -> None:
-    scenario = load_scenario("table5", [*BANDED, *FAR])
+    scenario = load_scenario("table5_paper", [*BANDED, *FAR])
     before = scenario.to_dict()
     session = Session(scenario, _cache())
     found = _infeasible(session)
@@ -158,7 +158,7 @@ def test_no_work_or_no_time_no_suggested_change_and_the_scenario_stays_as_it_is(
 
 def test_a_change_that_leaves_what_a_model_can_be_is_not_suggested() -> None:
     """A scenario takes a base height of 0.01 m, Sawyer's model none below 0.1 m."""
-    scenario = load_scenario("table5", [*BANDED, "robot.base_height=0.3"])
+    scenario = load_scenario("table5_paper", [*BANDED, "robot.base_height=0.3"])
     session = Session(scenario, _cache())
     (height,) = [found for found in adjustables(scenario) if found.keys == ("robot.base_height",)]
     trials = suggested_changes._Trials(session, _infeasible(session), suggested_changes.WORK)
@@ -183,7 +183,7 @@ def test_a_lift_that_no_start_led_to_is_found_from_the_motion_that_breaks_least(
         return replace(result, converged=False, status="Line_Search_Failed", x=x0)
 
     monkeypatch.setattr(Banded, "solve", fails_first)
-    solution = solve(load_scenario("table5", [*BANDED, "solver.tries=0"]))
+    solution = solve(load_scenario("table5_paper", [*BANDED, "solver.tries=0"]))
     assert solution.solved and solution.kept_start.startswith("elastic")
     first, others = solution.starts[:3], solution.starts[3:]
     assert [start.status for start in first] == ["Line_Search_Failed"] * 2 + ["converged"]
@@ -206,6 +206,6 @@ def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: py
 
     monkeypatch.setattr("liftopt.search.solve.coarse_search", blind)
     monkeypatch.setattr("liftopt.search.solve.solve_starts", fails)
-    solution = solve(load_scenario("table5", [*BANDED, "solver.tries=2"]), cache=_cache())
+    solution = solve(load_scenario("table5_paper", [*BANDED, "solver.tries=2"]), cache=_cache())
     assert asked == [2, 2 * WIDER]
     assert solution.solved and solution.reasons == () == solution.suggested_changes

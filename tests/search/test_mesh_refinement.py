@@ -40,13 +40,13 @@ LIMIT_OF_TABLE5 = 817.3
 
 @pytest.fixture(scope="module")
 def refined() -> Solution:
-    return solve(load_scenario("table5", [*BANDED, "refine.on=true"]))
+    return solve(load_scenario("table5_paper", [*BANDED, "refine.on=true"]))
 
 
 @pytest.fixture(scope="module")
 def coarse() -> Candidate:
     replanner = Replanner()
-    assert replanner.solve(load_scenario("table5", BANDED)).solved
+    assert replanner.solve(load_scenario("table5_paper", BANDED)).solved
     assert replanner.latest is not None
     return replanner.latest
 

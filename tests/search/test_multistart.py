@@ -80,8 +80,8 @@ def test_each_start_gets_its_share_in_iterations_and_all_the_time() -> None:
 def test_workers_and_a_kept_cache_change_nothing(tries: int) -> None:
     """Bit by bit: one worker, two workers, and a second time with what was kept; some starts are given up."""
     overrides = ["solver.name=banded", "solver.starts=6", "solver.intervals=16", f"solver.tries={tries}"]
-    one = solve(load_scenario("table5", [*overrides, "solver.workers=1"]))
-    both, cache = load_scenario("table5", overrides), SolverCache()
+    one = solve(load_scenario("table5_paper", [*overrides, "solver.workers=1"]))
+    both, cache = load_scenario("table5_paper", overrides), SolverCache()
     assert one.solved
     given_up = "given up: nothing better than another start in sight"
     statuses = {start.status for start in one.starts}

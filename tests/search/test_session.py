@@ -14,7 +14,7 @@ from liftopt.search.session import FINISHING_SHARE, TRYING_SHARE, Session
 
 @pytest.fixture
 def session() -> Session:
-    return Session(load_scenario("table5_near", ["solver.intervals=8", "solver.time_limit=100"]), SolverCache())
+    return Session(load_scenario("table5_paper", ["solver.intervals=8", "solver.time_limit=100"]), SolverCache())
 
 
 def test_each_phase_has_its_share_of_the_limit(session: Session) -> None:

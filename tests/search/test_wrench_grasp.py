@@ -29,7 +29,7 @@ CHEAP = ("solver.name=banded", "solver.starts=2")
 
 @pytest.fixture(scope="module")
 def wrench(solved: Callable[..., Any]) -> Any:
-    return solved("table5", *BOTH, *CHEAP)
+    return solved("table5_paper", *BOTH, *CHEAP)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def flat() -> tuple[Problem, RestToRestSpline, SolverResult]:
     """A flat hand and a gripper, solved by the banded solver from the first posture pair."""
     from liftopt.search.initial_guess import posture_starts
 
-    scenario, spline = load_scenario("table5", FLAT), RestToRestSpline(20)
+    scenario, spline = load_scenario("table5_paper", FLAT), RestToRestSpline(20)
     problem = Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), spline.mesh())
     deadline = NEVER
     result = Banded(problem).solve(posture_starts(problem, 1, 0, deadline)[0].x, deadline=deadline)
@@ -79,7 +79,7 @@ def test_file_keeps_the_moments(wrench: Any) -> None:
 
 def test_both_solvers_agree(solved: Callable[..., Any], wrench: Any) -> None:
     """IPOPT from the same starts: the objective within 5 %, both verified."""
-    other = solved("table5", *BOTH, "solver.name=ipopt", *CHEAP[1:]).solution
+    other = solved("table5_paper", *BOTH, "solver.name=ipopt", *CHEAP[1:]).solution
     assert other.solved and wrench.solution.objective <= 1.05 * other.objective
 
 
@@ -92,7 +92,7 @@ def test_share_moves_with_the_weights_only_where_it_can(solved: Callable[..., An
     for grasps, several in (((), (0.1, 10.0)), (BOTH, (0.1, 1.0, 10.0))):
         for weight in several:
             weights = f"human.weight={weight**0.5}", f"robot.weight={weight**-0.5}"
-            solution = solved("table5", *grasps, *weights, *CHEAP, "task.rest=acceleration").solution
+            solution = solved("table5_paper", *grasps, *weights, *CHEAP, "task.rest=acceleration").solution
             assert solution.solved, solution.status
             shares[bool(grasps), weight] = np.array(load_share(solution)["agents"]["human"]["share"])
     for weight in (0.1, 10.0):
@@ -128,7 +128,7 @@ def test_flat_hand_neither_pulls_slides_nor_tips(flat: tuple[Problem, RestToRest
 def test_mixed_holds_are_the_same_in_both_evaluations(rng: np.random.Generator) -> None:
     """CasADi's assembly against the extension's, where one hold has moments and the other none."""
     for overrides in (["human.grasp=wrench"], ["human.contact=flat"], ["robot.grasp=wrench"]):
-        scenario = load_scenario("table5", overrides)
+        scenario = load_scenario("table5_paper", overrides)
         team = Team.of(agents_of(scenario), object_of(scenario))
         problem = Problem(team, task_of(scenario), RestToRestSpline(6).mesh())
         x = np.clip(rng.normal(size=problem.layout.n_x), *problem.bounds())
@@ -142,7 +142,7 @@ def test_mixed_holds_are_the_same_in_both_evaluations(rng: np.random.Generator) 
                                  "human.contact=glue", "human.friction=0", "limits.table_roll_deg=61"])  # fmt: skip
 def test_keys_are_checked(key: str) -> None:
     with pytest.raises(InputError) as caught:
-        load_scenario("table5", [key])
+        load_scenario("table5_paper", [key])
     assert key.partition("=")[0] in str(caught.value)
 
 

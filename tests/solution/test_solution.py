@@ -22,23 +22,21 @@ from liftopt.scenario.model import Scenario, load_scenario
 GRAVITY = np.array([0.0, 0.0, -9.81])
 ARMS = {"human": ("human_arm.urdf", 10), "robot": ("sawyer.urdf", 7)}
 ONE_START = "solver.starts=1"
+PAPER = ("objective.preset=paper", "limits.clearance=off")
 CASES = {
-    "table5": ("table5",),
-    "near": ("table5_near", "solver.starts=2"),
-    "free": ("table5_free", "solver.starts=2"),
-    "fine": ("table5", "solver.intervals=40", ONE_START),
-    "coarse": ("table5", "solver.intervals=10", ONE_START),
-    "no human weight": ("table5", "human.weight=0", ONE_START),
-    "no robot weight": ("table5", "robot.weight=0", ONE_START),
+    "paper": ("table5_paper",),
+    "near": ("table5_near", *PAPER, "solver.starts=2"),
+    "free": ("table5_free", *PAPER, "solver.starts=2"),
+    "fine": ("table5_paper", "solver.intervals=40", ONE_START),
+    "coarse": ("table5_paper", "solver.intervals=10", ONE_START),
+    "no human weight": ("table5_paper", "human.weight=0", ONE_START),
+    "no robot weight": ("table5_paper", "robot.weight=0", ONE_START),
     "woman lowers": (
-        "table5", "task.start.height=1.3", "task.end.height=0.95", "human.sex=female", "human.stature=1.62",
+        "table5_paper", "task.start.height=1.3", "task.end.height=0.95", "human.sex=female", "human.stature=1.62",
         "human.mass=60", "object.width=0.4", "robot.tool.mass=0.8", "duration=2.5", ONE_START,
     ),
-    "no acceleration": ("table5", "task.rest=acceleration", ONE_START),
-    "paper": (
-        "table5", "objective.acceleration_weight=0", "objective.force_weight=0", "limits.balance_tolerance=1",
-        "solver.intervals=40", ONE_START,
-    ),
+    "no acceleration": ("table5_paper", "task.rest=acceleration", ONE_START),
+    "bare": ("table5_bare", "solver.intervals=40", ONE_START),
 }  # fmt: skip
 
 

@@ -97,7 +97,10 @@ def test_what_is_no_result_is_told_with_what_was_meant(path: str, said: str) -> 
         ("results/tabel5", "did you mean results/table5 or table5?"),
         ("results", "nor a result folder with a solution.nc; did you mean results/table5?"),
         ("empty", "is not a file, nor a result folder with a solution.nc"),
-        ("nowhere/x.toml", "no such file, nor a shipped scenario (table5, table5_free, table5_near)"),
+        (
+            "nowhere/x.toml",
+            "no such file, nor a shipped scenario (table5, table5_bare, table5_free, table5_near, table5_paper)",
+        ),
     ],
 )
 @pytest.mark.usefixtures("results")

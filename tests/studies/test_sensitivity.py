@@ -26,7 +26,8 @@ from liftopt.search.solve import solve
 from liftopt.studies.parameters import Parameter, changed, parameters_of
 from liftopt.studies.sensitivity import SensitivityStudy, figures, study
 
-ENTRIES = ("solver.name=banded", "solver.starts=1", "solver.intervals=12")
+PAPER = ("objective.preset=paper", "limits.clearance=off")
+ENTRIES = (*PAPER, "solver.name=banded", "solver.starts=1", "solver.intervals=12")
 PARAMETERS = parameters_of(load_scenario())
 
 

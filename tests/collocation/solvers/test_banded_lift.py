@@ -163,7 +163,7 @@ def test_rows_are_measured_as_casadi_has_them(small_lift: Problem, banded: Bande
 @pytest.mark.parametrize("grasps", [(), ("human.grasp=wrench",)])
 def test_rows_of_a_balance_at_rest_are_measured_exactly(grasps: tuple[str, ...]) -> None:
     """By CasADi's Jacobian; on one knot there are no accelerations, so that an entry has one term."""
-    scenario = load_scenario("table5", grasps)
+    scenario = load_scenario("table5_paper", grasps)
     problem = Problem(Team.of(agents_of(scenario), object_of(scenario)), task_of(scenario), Mesh.at_rest())
     solver = Banded(problem)
     x = np.random.default_rng(2).normal(size=problem.layout.n_x)
@@ -175,7 +175,7 @@ def test_rows_of_a_balance_at_rest_are_measured_exactly(grasps: tuple[str, ...])
 
 def test_linear_systems_of_a_fine_mesh_need_hardly_any_refinement() -> None:
     """Closure acts on positions, balance on accelerations: one penalty for both takes two each iteration."""
-    problem = problem_of(load_scenario("table5"), 80)
+    problem = problem_of(load_scenario("table5_paper"), 80)
     solver = Banded(problem)
     result = solver.solve(posture_pair(problem), deadline=NEVER)
     assert result.converged and kkt_error(problem, result.x, result.multipliers).error <= TOLERANCE
@@ -273,7 +273,7 @@ def test_shipped_scenarios(name: str) -> None:
 
 def test_varied_scenarios_at_the_first_try() -> None:
     """Statures, masses, heights, distances and durations: 19 of 20 at the first try, each KKT error by Pinocchio."""
-    rng, base, banded, failed = np.random.default_rng(11), load_scenario("table5"), None, []
+    rng, base, banded, failed = np.random.default_rng(11), load_scenario("table5_paper"), None, []
     ranges = {
         "human.stature": (1.55, 1.92), "human.mass": (52.0, 98.0), "object.mass": (1.0, 4.0), "duration": (1.4, 3.0),
         "task.start.height": (0.75, 1.0), "task.end.height": (1.2, 1.5), "task.standing_distance": (1.75, 2.05),
@@ -297,7 +297,9 @@ def test_ipopt_takes_over_where_it_fails(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(Banded, "solve", fail)
     lines: list[str] = []
-    scenario = load_scenario("table5").replace({"solver.name": "banded", "solver.starts": 2, "solver.intervals": 16})
+    scenario = load_scenario("table5_paper").replace(
+        {"solver.name": "banded", "solver.starts": 2, "solver.intervals": 16}
+    )
     solution = solve(scenario, progress=lines.append)
     assert solution.verification.passed and any("IPOPT takes over" in line for line in lines)
     assert {start.status for start in solution.starts[:2]} == {"converged (IPOPT, after banded: Line_Search_Failed)"}
