@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.separating_planes import PosePart
+from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
@@ -24,6 +24,7 @@ from liftopt.search.solid_distances import SolidDistances, solid_distances
 from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Array
 
+Pairs = npt.NDArray[np.int64]
 # At the knots planes ask for so much more than the scenario does: solids come nearer between knots [m].
 MARGIN = 0.003
 # A motion counts as clear where nothing is deeper than this; the verification allows twice as much [m].
@@ -39,24 +40,58 @@ ROUNDS, SAME = 6, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Keeper:
-    """What keeps a team's solids apart.
+class Attempt:
+    """What came of making an optimum clear.
+
+    Attributes:
+        candidate: clear, or the last that was tried.
+        clear: whether it is.
+        deep: numbers of the pairs that overlapped at first.
+    """
+
+    candidate: Candidate
+    clear: bool
+    deep: frozenset[int]
+
+
+def planes_along(
+    solids: TeamSolids, problem: Problem, x: Array, pairs: Pairs, clearance: float, like: SeparatingPlanes | None = None
+) -> SeparatingPlanes:
+    """Return planes for pairs by number, at the knots of a motion ``x`` (n_x,) of a problem.
+
+    Args:
+        solids: of the problem's team.
+        problem: on whose knots.
+        x: the motion.
+        pairs: that get rows.
+        clearance: that the scenario asks for [m].
+        like: planes whose structure is kept where it is large enough.
+    """
+    knots = solid_distances(solids, problem, problem.mesh.basis[0] @ problem.unpack(x)[0], NEAR, pairs)
+    return choose_planes(solids, knots, pairs, PlaneOptions(clearance + MARGIN), like)
+
+
+def pairs_in(solids: TeamSolids, planes: SeparatingPlanes | None) -> Pairs:
+    """Return the numbers of the pairs that have rows."""
+    names = {name for pair in planes.separations for at in pair.names for name in at} if planes else set()
+    return np.flatnonzero([pair.told in names for pair in solids.pairs])
+
+
+@dataclass(frozen=True, eq=False)
+class Clearer:
+    """Makes optima of one team clear.
 
     Attributes:
         solids: of the team and of what stands around.
-        parts: whose poses planes take.
         clearance: least distance [m].
         deadline: past which solvers stop.
         solver: gives a solver for a problem.
-        on_solve: called with every result.
     """
 
     solids: TeamSolids
-    parts: tuple[PosePart, ...]
     clearance: float
     deadline: Deadline
     solver: Callable[[Problem], Solver]
-    on_solve: Callable[[SolverResult], None] = lambda result: None
 
     def look(self, problem: Problem, spline: RestToRestSpline, x: Array) -> tuple[SolidDistances, Array]:
         """Return distances at the knots, and the least of each pair (P,) at any time, as far as they may matter [m]."""
@@ -70,62 +105,57 @@ class Keeper:
         return knots, np.asarray(between.distance.min(axis=0))
 
     def is_clear(self, least: Array) -> bool:
-        """Whether all pairs are as far apart as the scenario asks."""
+        """Whether all pairs are as far apart as the scenario asks, given the least distance of each (P,)."""
         return bool(least.min(initial=np.inf) >= self.clearance - CLEAR)
 
-    def make_clear(
-        self, candidate: Candidate, polish: bool = True, avoided: frozenset[int] = frozenset()
-    ) -> Candidate | None:
-        """Return the clear optimum that a candidate leads to; itself if it is clear, None if none was found.
+    def make_clear(self, candidate: Candidate, polish: bool = True, avoided: frozenset[int] = frozenset()) -> Attempt:
+        """Return the clear optimum that a candidate leads to; itself if it is clear.
 
         Args:
             candidate: an optimum, with planes or without.
             polish: new planes until the objective falls no more; else the first clear motion will do.
             avoided: pairs whose first choice of a side led nowhere.
         """
-        problem, spline, result = candidate.problem, candidate.spline, candidate.result
-        watched = np.zeros(len(self.solids.pairs), dtype=bool)
-        clear: Candidate | None = None
-        for _ in range(ROUNDS):
-            knots, least = self.look(problem, spline, result.x)
+        now, clear, watched = candidate, None, pairs_in(self.solids, candidate.problem.planes)
+        deep: frozenset[int] = frozenset()
+        for turn in range(ROUNDS + 1):
+            knots, least = self.look(now.problem, now.spline, now.result.x)
+            if turn == 0:
+                deep = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
             if self.is_clear(least):
-                now = replace(candidate, problem=problem, result=result)
-                settled = clear is not None and result.objective > (1 - SAME) * clear.result.objective
-                if clear is None or result.objective < clear.result.objective:
-                    clear = now
-                if problem.planes is None or settled or not polish:
-                    return clear
-            elif clear is not None:
-                return clear
-            watched |= least < self.clearance + WATCHED
-            watched |= self._kept(problem)
-            solved = self._solve(problem, knots, np.flatnonzero(watched), result, avoided)
-            if solved is None:
-                return clear
-            problem, result = solved
-        return clear
+                before, clear = clear, now
+                objective = now.result.objective
+                if before and before.result.objective < objective:
+                    clear = before
+                settled = before is not None and objective > (1 - SAME) * before.result.objective
+                if now.problem.planes is None or settled or not polish:
+                    break
+            elif clear or turn == ROUNDS:
+                break
+            watched = np.union1d(watched, np.flatnonzero(least < self.clearance + WATCHED))
+            now = self._solved(now, knots, watched, avoided)
+            if not now.result.converged:
+                break
+        return Attempt(clear or now, clear is not None, deep)
 
-    def _kept(self, problem: Problem) -> npt.NDArray[np.bool_]:
-        """Return which pairs have rows in a problem."""
-        separations = problem.planes.separations if problem.planes else ()
-        names = {name for pair in separations for at in pair.names for name in at}
-        return np.array([pair.told in names for pair in self.solids.pairs])
-
-    def _solve(
-        self,
-        problem: Problem,
-        knots: SolidDistances,
-        pairs: npt.NDArray[np.int64],
-        before: SolverResult,
-        avoided: frozenset[int],
-    ) -> tuple[Problem, SolverResult] | None:
+    def _solved(self, now: Candidate, knots: SolidDistances, pairs: Pairs, avoided: frozenset[int]) -> Candidate:
+        """Return what the solver makes of a candidate with new planes."""
         options = PlaneOptions(self.clearance + MARGIN, avoided)
-        planes = choose_planes(self.solids, self.parts, knots, pairs, options, problem.planes)
-        other = problem.apart(planes)
+        problem, before = now.problem, now.result
+        other = problem.apart(choose_planes(self.solids, knots, pairs, options, problem.planes))
         warm = transfer_multipliers(problem, before.multipliers, other)
         same = problem.planes is not None and other.same_structure(problem)
         result = self.solver(other).solve(
             before.x, deadline=self.deadline, warm=replace(warm, interpolated=not same), problem=other
         )
-        self.on_solve(result)
-        return (other, result) if result.converged else None
+        return replace(now, problem=other, result=total(before, result))
+
+
+def total(before: SolverResult, after: SolverResult) -> SolverResult:
+    """Return a result with the work of the one before it."""
+    return replace(
+        after,
+        iterations=before.iterations + after.iterations,
+        seconds=before.seconds + after.seconds,
+        evaluation_seconds=before.evaluation_seconds + after.evaluation_seconds,
+    )

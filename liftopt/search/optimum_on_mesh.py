@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import PRUNED, STOPPED, SolverResult
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.types import Progress
+from liftopt.search.make_clear import pairs_in, planes_along
+from liftopt.types import Array, Progress
 
 FASTEST_FIRST = (BANDED, IPOPT)
 IPOPT_ITERATIONS = 200  # from each start, where it takes over from another solver
@@ -45,6 +48,8 @@ def optimum_on_mesh(
     spline, scenario = candidate.spline.on(intervals), candidate.scenario
     problem = cache.problem(scenario, spline, progress)
     start = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, spline)
+    if candidate.problem.planes is not None:
+        problem = problem.apart(_planes(cache, candidate, problem, start))
     warm = None
     if not without_multipliers:
         warm = transfer_multipliers(candidate.problem, candidate.result.multipliers, problem)
@@ -65,3 +70,10 @@ def optimum_on_mesh(
         if incumbent is not None or result.status in (STOPPED, PRUNED):
             break
     return None
+
+
+def _planes(cache: SolverCache, candidate: Candidate, problem: Problem, x: Array) -> SeparatingPlanes:
+    """Return planes for the pairs that a candidate has planes for, along its motion on another mesh."""
+    solids = cache.solids(candidate.scenario, problem.team)
+    pairs = pairs_in(solids, candidate.problem.planes)
+    return planes_along(solids, problem, x, pairs, candidate.scenario.limits.clearance or 0.0)

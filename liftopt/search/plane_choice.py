@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.separating_planes import Body, PosePart, SeparatingPlanes, Separation
+from liftopt.collocation.separating_planes import Body, SeparatingPlanes, Separation
 from liftopt.search.solid_distances import SolidDistances, gaps
 from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Array
@@ -54,7 +54,6 @@ class _Row:
 
 def choose_planes(
     solids: TeamSolids,
-    parts: tuple[PosePart, ...],
     found: SolidDistances,
     pairs: npt.NDArray[np.int64],
     options: PlaneOptions,
@@ -64,7 +63,6 @@ def choose_planes(
 
     Args:
         solids: of the team.
-        parts: whose poses the problem may use.
         found: distances at the knots, known below ``NEAR``.
         pairs: numbers of the pairs that get rows.
         options: what the planes ask for.
@@ -82,7 +80,7 @@ def choose_planes(
     order = sorted({*rows, *known})  # what is known and no longer near asks for nothing
     made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in order)
     used = {body.part for key in order for body in key}
-    return SeparatingPlanes(tuple(part for part in parts if part.part in used), made)
+    return SeparatingPlanes(tuple(part for part in solids.parts if part.part in used), made)
 
 
 def _separation(one: Body, other: Body, rows: list[list[_Row]], least: int) -> Separation:

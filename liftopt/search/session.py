@@ -10,7 +10,8 @@ from liftopt.collocation.solvers.result import PRUNED, Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
-from liftopt.search.cache import IPOPT, SolverCache
+from liftopt.search.cache import BANDED, IPOPT, SolverCache
+from liftopt.search.make_clear import Clearer
 from liftopt.solution.solution import CUT_SHORT, StartRecord
 from liftopt.types import Progress
 
@@ -75,6 +76,20 @@ class Session:
     def solver(self, problem: Problem, name: str, worker: int = 0, rough: float = 0.0) -> Solver:
         """Return a solver by name for a problem; see ``SolverCache.solver``."""
         return self.cache.solver(problem, self.scenario, name, self.progress, worker, rough)
+
+    def clearer(self, problem: Problem, rough: float = 0.0) -> Clearer | None:
+        """Return what makes optima of a problem clear, on any mesh; None where solids may overlap.
+
+        Args:
+            problem: whose team.
+            rough: of its solvers, see ``SolverCache.solver``.
+        """
+        clearance = self.scenario.limits.clearance
+        if clearance is None:
+            return None
+        name = BANDED if rough else self.scenario.solver.name
+        solids = self.cache.solids(self.scenario, problem.team, self.progress)
+        return Clearer(solids, clearance, self.deadline, lambda given: self.solver(given, name, rough=rough))
 
     def solvers(self, problem: Problem) -> list[Solver]:
         """Return the scenario's own solver for a problem, one for each worker that its starts keep busy."""

@@ -29,20 +29,30 @@ class TeamSolids:
         team: whose.
         obstacles: what stands around.
         pairs: what must keep apart.
+        progress: called when kernels must be compiled.
+        known: parts whose kernels are used again if they fit.
     """
 
     team: Team
     obstacles: tuple[Solid, ...]
     pairs: tuple[SolidPair, ...]
+    progress: Progress | None = None
+    known: tuple[PosePart, ...] = ()
 
     @staticmethod
-    def of(team: Team, obstacles: Sequence[Solid]) -> TeamSolids:
-        """Return the solids of a team and of what stands around."""
-        return TeamSolids(team, tuple(obstacles), solid_pairs(team.agents, team.object, obstacles))
+    def of(
+        team: Team, obstacles: Sequence[Solid], progress: Progress | None = None, like: TeamSolids | None = None
+    ) -> TeamSolids:
+        """Return the solids of a team and of what stands around; kernels of ``like`` are used again if they fit."""
+        known = vars(like).get("parts", like.known) if like else ()
+        return TeamSolids(
+            team, tuple(obstacles), solid_pairs(team.agents, team.object, obstacles), progress, tuple(known)
+        )
 
-    def parts(self, progress: Progress | None = None, like: Sequence[PosePart] = ()) -> tuple[PosePart, ...]:
-        """Return the poses that planes between any of them take; arguments as ``pose_parts``."""
-        return pose_parts(self.team.agents, self.team.object, self.joints, progress, like)
+    @cached_property
+    def parts(self) -> tuple[PosePart, ...]:
+        """The poses that planes between any of the solids take; kernels are loaded or compiled."""
+        return pose_parts(self.team.agents, self.team.object, self.joints, self.progress, self.known)
 
     @cached_property
     def solids(self) -> tuple[Solid, ...]:

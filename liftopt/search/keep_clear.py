@@ -1,0 +1,65 @@
+"""The promising ones of the optima found, each made clear where bodies overlap in it.
+
+Planes only raise an objective, so optima are taken in the order of theirs as long as they promise to lead below what is
+clear already. The side on which a body passes another is chosen by the overlap; where that leads nowhere, others are
+tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from liftopt.search.candidate import Candidate
+from liftopt.search.make_clear import Attempt, Clearer
+from liftopt.search.mesh_refinement import PROMISING
+from liftopt.search.optima import each_once, is_known, objective_of
+from liftopt.search.session import Session
+
+# Optima that are tried for each that is wanted, where many cannot be made clear.
+FAILING = 4
+
+
+def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> list[Candidate]:
+    """Return the most promising optima, clear where the scenario asks for it, the best first.
+
+    Args:
+        session: of the search.
+        optima: on one mesh, the best first, each once.
+        rough: of the solvers, see ``SolverCache.solver``.
+    """
+    wanted = session.scenario.solver.starts
+    clearer = session.clearer(optima[0].problem, rough) if optima else None
+    if clearer is None:
+        return [c for c in optima if c.result.objective <= PROMISING * optima[0].result.objective][:wanted]
+    found: list[Candidate] = []
+    failed: list[Attempt] = []
+    for candidate in optima[: FAILING * wanted]:
+        best = min(map(objective_of, found), default=None)
+        if best is not None and (candidate.result.objective > PROMISING * best or len(found) == wanted):
+            break
+        if session.deadline.passed:
+            break
+        attempt = clearer.make_clear(candidate, polish=False)
+        if attempt.clear:
+            found += [] if is_known(attempt.candidate.result.objective, found) else [attempt.candidate]
+        else:
+            failed.append(attempt)
+    if not found:
+        found = _other_sides(clearer, optima, failed, wanted)
+    return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
+
+
+def _other_sides(
+    clearer: Clearer, optima: Sequence[Candidate], failed: Sequence[Attempt], wanted: int
+) -> list[Candidate]:
+    """Return clear optima that pass on another side than the one that led nowhere."""
+    found: list[Candidate] = []
+    for candidate, first in zip(optima, failed, strict=False):
+        if len(found) == wanted or clearer.deadline.passed:
+            break
+        for avoided in (first.deep, *(frozenset({pair}) for pair in sorted(first.deep))):
+            attempt = clearer.make_clear(candidate, polish=False, avoided=avoided)
+            if attempt.clear:
+                found.append(attempt.candidate)
+                break
+    return found
