@@ -17,10 +17,12 @@ MEANINGS = {
     r"status": "solved, or why not, in one line",
     r"verified": "1 if it is solved and its own verification agrees",
     r"objective": "weighted sum of the terms",
+    r"preset": "of the objective: which terms it has",
     r"objective_limit": "the objective on ever finer meshes, extrapolated",
     r"objective_error": "objective / objective_limit - 1",
     r"objective_bar": "by how much the limit may be off, either way",
-    r"objective_\w+": "unweighted integral of this term: an agent's squared torques, accelerations, grasp forces",
+    r"objective_\w+": "unweighted integral of this term: an agent's squared torques (preset natural: of their shares "
+    "of strength), accelerations, grasp forces; range of motion, the object's tilt",
     r"iterations": "of the solver, from the start that was kept",
     r"intervals": "N of the mesh",
     r"max_violation": "largest value among the checks that must hold at the knots to 1e-6",

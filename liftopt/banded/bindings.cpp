@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <tuple>
 
 #include "callback_nlp.hpp"
@@ -68,6 +69,16 @@ banded::KnotRow row_of(const std::tuple<std::vector<std::tuple<int, int, double>
   for (const auto& [part, output, factor] : std::get<0>(given)) row.terms.push_back({part, output, factor});
   row.row = integers_of(std::get<1>(given));
   return row;
+}
+
+// Of rows neutral, squares below and above, fourth powers below and above.
+std::vector<banded::RangeTerm> range_of(const Doubles& rows) {
+  if (rows.ndim() != 2 || rows.shape(0) != 5) throw std::length_error("a term of a range has five numbers");
+  std::vector<banded::RangeTerm> terms;
+  const auto at = rows.unchecked<2>();
+  for (py::ssize_t j = 0; j < rows.shape(1); ++j)
+    terms.push_back({at(0, j), {at(1, j), at(2, j)}, {at(3, j), at(4, j)}});
+  return terms;
 }
 
 std::shared_ptr<banded::KernelNlp> kernel_nlp(
@@ -187,10 +198,17 @@ PYBIND11_MODULE(_liftopt_banded, module) {
       .def(py::init(&kernel_nlp), py::kw_only(), py::arg("lanes"), py::arg("weights"), py::arg("basis"),
            py::arg("control"), py::arg("force"), py::arg("parts"), py::arg("rows"), py::arg("linear"),
            py::arg("varied") = std::vector<std::tuple<std::vector<std::tuple<int, int>>, Integers>>{})
-      .def("set_parameters", [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,
-                                const Doubles& y_weight) {
-        nlp.set_parameters(part, vector_of(parameters), vector_of(c_weight), vector_of(y_weight));
-      })
+      .def(
+          "set_parameters",
+          [](banded::KernelNlp& nlp, int part, const Doubles& parameters, const Doubles& c_weight,
+             const Doubles& y_weight, const std::optional<Doubles>& c_weight_below,
+             const std::optional<Doubles>& range) {
+            nlp.set_parameters(part, vector_of(parameters), vector_of(c_weight), vector_of(y_weight),
+                               vector_of(c_weight_below.value_or(c_weight)),
+                               range ? range_of(*range) : std::vector<banded::RangeTerm>());
+          },
+          py::arg("part"), py::arg("parameters"), py::arg("c_weight"), py::arg("y_weight"),
+          py::arg("c_weight_below") = py::none(), py::arg("range") = py::none())
       .def("set_factors", [](banded::KernelNlp& nlp, const Doubles& factors) { nlp.set_factors(vector_of(factors)); },
            "Set the factors of the varied rows' terms, (terms, knots).");
   py::class_<banded::CallbackNlp, banded::Nlp, std::shared_ptr<banded::CallbackNlp>>(module, "CallbackNlp")

@@ -102,15 +102,19 @@ void KernelNlp::plan_products() {
   by_hessian_ = sums_of(hessian);
 }
 
-void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight) {
+void KernelNlp::set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight,
+                               Vector c_weight_below, std::vector<RangeTerm> range) {
   KernelPart& at = parts_.at(part);
   if (static_cast<int>(parameters.size()) != at.n_p || static_cast<int>(c_weight.size()) != at.n_squared ||
-      static_cast<int>(y_weight.size()) != at.columns.size())
+      c_weight_below.size() != c_weight.size() || static_cast<int>(y_weight.size()) != at.columns.size() ||
+      static_cast<int>(range.size()) > at.columns.size())
     throw std::length_error("the parameters of a part do not have its sizes");
   at.parameters.resize(parameters.size() * lanes());
   for (std::size_t i = 0; i < at.parameters.size(); ++i) at.parameters[i] = parameters[i / lanes()];
   at.c_weight = std::move(c_weight);
   at.y_weight = std::move(y_weight);
+  at.c_weight_below = std::move(c_weight_below);
+  at.range = std::move(range);
   at_.clear();
 }
 
@@ -128,14 +132,26 @@ void KernelNlp::add_squares(int group, double& f) const {
   const double *w = knots_.weights(group), *c = c_.data() + group * n_c_ * width;
   const double* y = y_.data() + group * n_y_ * width;
   double sum[kLanes] = {};
-  const auto add = [&](const Vector& weight, const double* values) {
-    for (std::size_t j = 0; j < weight.size(); ++j)
-      if (weight[j] != 0.0)
-        for (int l = 0; l < width; ++l) sum[l] += weight[j] * values[j * width + l] * values[j * width + l];
+  const auto add = [&](const Vector& below, const Vector& above, const double* values) {
+    for (std::size_t j = 0; j < above.size(); ++j)
+      if (below[j] != 0.0 || above[j] != 0.0)
+        for (int l = 0; l < width; ++l) {
+          const double value = values[j * width + l];
+          sum[l] += (value > 0.0 ? above[j] : below[j]) * value * value;
+        }
   };
   for (std::size_t p = 0; p < parts_.size(); ++p) {
-    add(parts_[p].c_weight, c + first_c_[p] * width);
-    add(parts_[p].y_weight, y + first_y_[p] * width);
+    const KernelPart& part = parts_[p];
+    add(part.c_weight_below, part.c_weight, c + first_c_[p] * width);
+    add(part.y_weight, part.y_weight, y + first_y_[p] * width);
+    for (std::size_t j = 0; j < part.range.size(); ++j) {
+      const RangeTerm& term = part.range[j];
+      for (int l = 0; l < width; ++l) {
+        const double away = y[(first_y_[p] + static_cast<int>(j)) * width + l] - term.neutral, squared = away * away;
+        const int side = away > 0.0;
+        sum[l] += (term.square[side] + term.fourth[side] * squared) * squared;
+      }
+    }
   }
   for (int l = 0; l < width; ++l) f += w[l] * sum[l];
 }
@@ -230,8 +246,9 @@ void KernelNlp::differentiate(int group, double scale, double* by_y) {
       const int* row = knot_rows_[square.row].row.data() + group * width;
       for (int l = 0; l < knots_.knots_of(group); ++l) {
         // The square's 2 w c' c'^T in terms of rows of g, which are factor times c.
-        const double weight = 2.0 * scale * w[l] * part.c_weight[j];
-        square_pull[square.output * width + l] = weight * c[square.output * width + l];
+        const double value = c[square.output * width + l];
+        const double weight = 2.0 * scale * w[l] * (value > 0.0 ? part.c_weight[j] : part.c_weight_below[j]);
+        square_pull[square.output * width + l] = weight * value;
         pull[square.output * width + l] += square_pull[square.output * width + l];
         squares[row[l]] = weight / (square.factor * square.factor);
       }
@@ -245,6 +262,16 @@ void KernelNlp::differentiate(int group, double scale, double* by_y) {
         diagonal[j * width + l] = 2.0 * scale * w[l] * part.y_weight[j];
         by_y[(first_y_[p] + j) * width + l] = diagonal[j * width + l] * y[(first_y_[p] + j) * width + l];
       }
+    for (std::size_t j = 0; j < part.range.size(); ++j) {
+      const RangeTerm& term = part.range[j];
+      const int at = (first_y_[p] + static_cast<int>(j)) * width;
+      for (int l = 0; l < width; ++l) {
+        const double away = y[at + l] - term.neutral, weight = scale * w[l];
+        const int side = away > 0.0;
+        by_y[at + l] += weight * (2.0 * term.square[side] + 4.0 * term.fourth[side] * away * away) * away;
+        diagonal[j * width + l] += weight * (2.0 * term.square[side] + 12.0 * term.fourth[side] * away * away);
+      }
+    }
   }
   knots_.operations().multiply(by_jacobian_transposed_, slopes, square_pull, by_y);
 }

@@ -1,8 +1,9 @@
 // The lift's problem from its compiled knot kernels, called without Python:
 //
-//     f = sum_parts sum_k w_k (c_weight . c_k^2 + y_weight . y_k^2),   g = G C(x) + A x,   y = S x,
+//     f = sum_parts sum_k w_k (c_weight . c_k^2 + y_weight . y_k^2 + range(y_k)),   g = G C(x) + A x,   y = S x,
 //
-// C all outputs c of all kernels. Derivatives stay at the knots, as the kernels return them: a product with the
+// C all outputs c of all kernels; c_weight is another where an output is negative, so that f and its gradient are
+// continuous and its curvature is that of the present side. Derivatives stay at the knots, as the kernels return them: a product with the
 // Jacobian or the Hessian interpolates to the knots, multiplies there for several knots at once, and interpolates back.
 #pragma once
 
@@ -18,6 +19,11 @@ namespace banded {
 // CasADi's calling convention of generated code.
 using Kernel = int (*)(const double** arguments, double** results, long long* iw, double* w, int memory);
 
+// What a leading variable y costs: square d^2 + fourth d^4 of d = y - neutral, with weights below and above neutral.
+struct RangeTerm {
+  double neutral, square[2], fourth[2];
+};
+
 // One agent or the object.
 struct KernelPart {
   Kernel value = nullptr;        // (y, p) -> c
@@ -27,6 +33,8 @@ struct KernelPart {
   std::vector<int> jacobian_row, jacobian_column, curvature_row, curvature_column;  // of the nonzeros
   Aligned parameters;                                                               // a lane each
   Vector c_weight, y_weight;  // of the squared leading outputs and of y in the objective
+  Vector c_weight_below;      // of outputs that are negative
+  std::vector<RangeTerm> range;
 };
 
 // A row of g at every knot that has it: the sum of factors times outputs of the knot.
@@ -47,7 +55,8 @@ class KernelNlp : public Nlp {
   // whose factor is the same at all knots.
   KernelNlp(Knots knots, std::vector<KernelPart> parts, std::vector<KnotRow> knot_rows, Sparse linear);
 
-  void set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight);
+  void set_parameters(int part, const Vector& parameters, Vector c_weight, Vector y_weight, Vector c_weight_below,
+                      std::vector<RangeTerm> range);
   // (varied, knots) factors that differ from knot to knot; zero until they are set.
   void set_factors(const Vector& factors);
 

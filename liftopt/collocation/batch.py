@@ -43,9 +43,11 @@ class Batch:
         """Return what each agent, and then the object, adds to the objective (parts, B) at unknowns ``x`` (B, n_x)."""
         weights, terms = self.problem.mesh.weights, []
         for i, (y, c) in enumerate(zip(self._knots(x), self._outputs(x), strict=True)):
-            c_weight, y_weight = self.problem.weights(i)
+            own = self.problem.weights(i)
+            outputs = c[:, : len(own.above)]
             # Not by a library of linear algebra, which rounds as the processor has it: starts are ranked by this.
-            squares = np.einsum("ij,j->i", c[:, : len(c_weight)] ** 2, c_weight) + np.einsum("ij,j->i", y**2, y_weight)
+            squares = np.einsum("ij,ij->i", outputs**2, own.of_outputs(outputs))
+            squares = squares + np.einsum("ij,j->i", y**2, own.variable) + np.einsum("ij->i", own.range_cost(y))
             terms.append(np.einsum("ij,j->i", squares.reshape(len(x), -1), weights))
         return np.array(terms)
 

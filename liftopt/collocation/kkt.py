@@ -67,12 +67,16 @@ def first_order(problem: Problem, x: Array, multipliers: Multipliers) -> FirstOr
     for i, part in enumerate(problem.parts):
         y = (part.select @ x).reshape(len(weights), part.kernel.n_y)
         c, jacobian = _evaluate(problem, i, y, period)
-        leading, y_weight = problem.weights(i)
-        c_weight = np.concatenate([leading, np.zeros(part.kernel.n_c - len(leading))])
-        objective += float(weights @ (c**2 @ c_weight + y**2 @ y_weight))
+        own = problem.weights(i)
+        c_weight = np.zeros_like(c)
+        c_weight[:, : len(own.above)] = own.of_outputs(c[:, : len(own.above)])
+        squares = (c**2 * c_weight).sum(axis=1) + y**2 @ own.variable + own.range_cost(y).sum(axis=1)
+        objective += float(weights @ squares)
         pull, pulls = pulls[: c.size].reshape(c.shape), pulls[c.size :]
         by_c = pull + 2 * weights[:, None] * c * c_weight
-        by_y = turned(jacobian.swapaxes(1, 2), by_c) + 2 * weights[:, None] * y * y_weight
+        by_y = turned(jacobian.swapaxes(1, 2), by_c) + 2 * weights[:, None] * y * own.variable
+        n_range = own.range.shape[1]
+        by_y[:, :n_range] += weights[:, None] * own.range_cost(y + 1j * STEP).imag / STEP
         gradient += part.select.T @ by_y.ravel()
         outputs.append(c.ravel())
     return FirstOrder(gradient, constraints.combine @ np.concatenate(outputs) + constraints.linear @ x, objective)

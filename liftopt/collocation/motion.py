@@ -9,7 +9,14 @@ import numpy as np
 from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
-from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
+from liftopt.collocation.task import TILT
+from liftopt.multibody.trajectory import (
+    AgentTrajectory,
+    ObjectTrajectory,
+    agent_trajectory,
+    limit_share,
+    object_trajectory,
+)
 from liftopt.types import Array
 
 
@@ -48,27 +55,40 @@ def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array
     return Motion(phase * period, tuple(agents), lifted)
 
 
-def objective_terms(motion: Motion) -> dict[str, float]:
-    """Return the unweighted integrals of the objective by the trapezoid rule over the knots.
+def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
+    """Return the unweighted integrals of the objective by the trapezoid rule over the times of a motion.
 
-    Keys: each agent's name (squared torques of its moving joints, eq. 10), ``"acceleration"`` (squared accelerations
-    of those joints and of the object's six coordinates) and ``"force"`` (squared grasp forces, and
-    squared moments over the squared breadth of the hand).
+    Keys: each agent's name (squared torques of its moving joints, eq. 10, or squared shares of their limits in the
+    torques' directions, as the task has it), ``"acceleration"`` (squared accelerations of those joints and of the
+    object's six coordinates) and ``"force"`` (squared grasp forces, and squared moments over the squared breadth of the
+    hand); with shares, or where they have a weight, ``"range"`` (what joint angles cost, see ``Comfort``) and
+    ``"tilt"`` (the object's squared roll and pitch in units of ``TILT``).
     """
+    task = problem.task
     step = np.diff(motion.time)
     weights = np.zeros(len(motion.time))
     weights[:-1] += step / 2
     weights[1:] += step / 2
-    terms = {agent.name: float(weights @ (agent.tau[:, agent.moving] ** 2).sum(axis=1)) for agent in motion.agents}
+    torques = {a.name: limit_share(a) if task.shares else a.tau[:, a.moving] for a in motion.agents}
+    terms = {name: float(weights @ (tau**2).sum(axis=1)) for name, tau in torques.items()}
     acceleration = sum((agent.a[:, agent.moving] ** 2).sum(axis=1) for agent in motion.agents)
     acceleration = acceleration + (motion.object.pose_acceleration**2).sum(axis=1)
     contact = [np.hstack([agent.grasp_force, agent.grasp_moment / agent.grasp.breadth]) for agent in motion.agents]
     force = np.sum([(each**2).sum(axis=1) for each in contact], axis=0)
-    return terms | {"acceleration": float(weights @ acceleration), "force": float(weights @ force)}
+    terms |= {"acceleration": float(weights @ acceleration), "force": float(weights @ force)}
+    if "range" in (counted := objective_weights(problem)):
+        comforts = [agent.comfort for agent in problem.team.agents]
+        costs = [c.cost(a.q[:, a.moving]) for c, a in zip(comforts, motion.agents, strict=True) if c is not None]
+        terms["range"] = float(sum(weights @ cost for cost in costs))
+    if "tilt" in counted:
+        terms["tilt"] = float(weights @ ((motion.object.pose[:, 3:5] / TILT) ** 2).sum(axis=1))
+    return terms
 
 
 def objective_weights(problem: Problem) -> dict[str, float]:
     """Return the weight of each of ``objective_terms``."""
     task = problem.task
     weights = {agent.name: w for agent, w in zip(problem.team.agents, task.agent_weights, strict=True)}
-    return weights | {"acceleration": task.acceleration_weight, "force": task.force_weight}
+    weights |= {"acceleration": task.acceleration_weight, "force": task.force_weight}
+    more = {"range": task.range_weight, "tilt": task.tilt_weight}
+    return weights | {name: weight for name, weight in more.items() if weight or task.shares}

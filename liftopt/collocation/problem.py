@@ -15,12 +15,12 @@ from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pa
 from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.constraints import Constraints, build_constraints
 from liftopt.collocation.dynamics import STRUCTURAL_ZERO, Topology, agent_functions, object_functions
-from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
+from liftopt.collocation.layout import FORCE_SIZE, Layout
+from liftopt.collocation.objective import Weights, agent_weights, object_weights
 from liftopt.collocation.separating_planes import PosePart, SeparatingPlanes
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.task import LiftTask
 from liftopt.collocation.wrench_dynamics import (
-    WRENCH_SIZE,
     WrenchTopology,
     wrench_agent_functions,
     wrench_object_functions,
@@ -128,7 +128,8 @@ class Problem:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The agents, the object and the poses of bodies that are kept apart, as the assembly takes them."""
-        own = [Part(kernel, self.layout.select(i)) for i, kernel in enumerate(self.team.kernels)]
+        kernels = enumerate(self.team.kernels)
+        own = [Part(kernel, self.layout.select(i), self.weights(i).range.shape[1]) for i, kernel in kernels]
         return (*own, *(Part(pose.kernel, self.layout.select_values(pose.part)) for pose in self.poses))
 
     @cached_property
@@ -148,7 +149,7 @@ class Problem:
         packed = []
         for i in range(len(self.parts)):
             kernel = np.concatenate([[self.task.duration], self.topologies[i].parameters])
-            packed.append(PartParameters(kernel, *self.weights(i)))
+            packed.append(PartParameters(kernel, self.weights(i)))
         return pack(packed)
 
     def same_structure(self, other: Problem) -> bool:
@@ -156,7 +157,8 @@ class Problem:
         rows = ([(block.name, block.who, block.rows) for block in p.constraints.blocks] for p in (self, other))
         kernels = zip(self.team.kernels, other.team.kernels, strict=True)
         planes = [p.planes.structure if p.planes else None for p in (self, other)]
-        same = planes[0] == planes[1] and all(a is b for a, b in kernels)
+        ranged = [[part.n_range for part in p.parts] for p in (self, other)]
+        same = planes[0] == planes[1] and ranged[0] == ranged[1] and all(a is b for a, b in kernels)
         return self.mesh is other.mesh and same and next(rows) == next(rows)
 
     def interchangeable(self, other: Problem) -> bool:
@@ -173,24 +175,15 @@ class Problem:
         vars(other).update(layout=self.layout, _bounds=self._bounds)
         return other
 
-    def weights(self, part: int) -> tuple[Array, Array]:
-        """Return the weights of a part's squared leading outputs and squared knot variables in the objective.
-
-        The integrals over time are T times those over the phase, and qdd = q'' / T**2.
-        """
-        task, kernel, agent = self.task, self.parts[part].kernel, part < len(self.team.agents)
-        n = self.team.coordinates[part] if agent else OBJECT_SIZE
-        c_weight, y_weight = np.zeros(kernel.n_squared), np.zeros(kernel.n_y)
-        if part > len(self.team.agents):
-            return c_weight, y_weight
-        y_weight[:n] = self.posture_weight
-        y_weight[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
-        if agent:
-            y_weight[3 * n : 3 * n + FORCE_SIZE] = task.force_weight * task.duration
-            moments = y_weight[3 * n + FORCE_SIZE : 3 * n + WRENCH_SIZE]
-            moments[:] = task.force_weight * task.duration / self.team.agents[part].grasp.breadth ** 2
-            c_weight[:] = task.agent_weights[part] * task.duration
-        return c_weight, y_weight
+    def weights(self, part: int) -> Weights:
+        """Return what the objective weighs of a part."""
+        agents = self.team.agents
+        if part > len(agents):  # a pose
+            return Weights.none(self.parts[part].kernel.n_y)
+        n_y = self.team.kernels[part].n_y
+        if part < len(agents):
+            return agent_weights(self.task, part, agents[part], n_y, self.posture_weight)
+        return object_weights(self.task, n_y, self.posture_weight)
 
     def bounds(self) -> tuple[Array, Array]:
         """Return lower and upper bounds (n_x,) of the unknowns.

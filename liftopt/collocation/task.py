@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import radians
 
 from liftopt.types import Array
 
 OBJECT_COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
+TILT = radians(10.0)  # of the object, that counts as one [rad]
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,9 @@ class LiftTask:
         pose_velocity: speed limit of each coordinate [m/s, rad/s].
         agent_weights: weight of each agent's squared torques in the objective (eq. 10).
         acceleration_weight, force_weight: weights of the squared accelerations and grasp forces.
+        range_weight: weight of what the joint angles of agents cost, see ``Comfort``.
+        tilt_weight: weight of the object's squared roll and pitch, in units of ``TILT``.
+        shares: whether torques count as shares of the joint's limit in their direction, not in Nm.
         max_grasp_force: largest norm of a grasp force [N].
         balance_tolerance: tolerance of the object's balance (eq. 17) [N, Nm]; 0 asks for equality on five rows.
     """
@@ -38,3 +43,6 @@ class LiftTask:
     force_weight: float
     max_grasp_force: float
     balance_tolerance: float = 0.0
+    range_weight: float = 0.0
+    tilt_weight: float = 0.0
+    shares: bool = False

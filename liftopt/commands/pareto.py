@@ -121,7 +121,7 @@ def _row(front: Front, point: Point) -> dict[str, Any]:
     others = [name for name in used if name not in front.between]
     efforts = dict(zip(front.between, point.efforts, strict=True))
     if others:
-        terms = objective_terms(candidate.at(candidate.spline.phase * duration))
+        terms = objective_terms(candidate.problem, candidate.at(candidate.spline.phase * duration))
         efforts |= {name: terms[name] for name in others}
     everybody = (*front.between, *others)
     return {

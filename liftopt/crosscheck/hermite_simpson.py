@@ -34,6 +34,7 @@ import numpy as np
 
 from liftopt.collocation.task import LiftTask
 from liftopt.crosscheck.instant import FORCE_SIZE, OBJECT_SIZE, Coordinates, Instant, instant
+from liftopt.crosscheck.integrand import integrand
 from liftopt.errors import SolverError
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.types import Array
@@ -176,7 +177,7 @@ class HermiteSimpson:
         return defects
 
     def _solver(self, max_iterations: int, seconds: float) -> tuple[Any, Array, Array, Any]:
-        n, m, n_y, points = self.at.n_q, self.at.n_force, len(self.units), self.n_points
+        n, n_y, points = self.at.n_q, len(self.units), self.n_points
         x = ca.MX.sym("x", n_y * points)
         y = ca.reshape(x, n_y, points)
         physical = ca.mtimes(ca.diag(ca.DM(self.units)), y)
@@ -184,15 +185,7 @@ class HermiteSimpson:
         rows = self._rows(q, v, a, physical)
         g = ca.vertcat(*(ca.vec(row) for row, _, _ in rows))
         lower, upper = (np.concatenate([np.full(row[0].numel(), row[side]) for row in rows]) for side in (1, 2))
-        weights = np.concatenate(
-            [
-                np.zeros(2 * n),
-                np.full(n, self.task.acceleration_weight),
-                np.full(m, self.task.force_weight),
-                np.repeat(self.task.agent_weights, self.at.joints),
-            ]
-        )
-        f = ca.mtimes([ca.DM(weights).T, physical**2, ca.DM(self._simpson)])
+        f = ca.mtimes(integrand(self.agents, self.task, self.at, physical), ca.DM(self._simpson))
         ipopt = dict(
             print_level=0, sb="yes", tol=TOLERANCE, constr_viol_tol=TOLERANCE, max_iter=max_iterations,
             max_wall_time=seconds, mu_init=1e-3, bound_push=1e-6, bound_frac=1e-6, bound_relax_factor=1e-10,

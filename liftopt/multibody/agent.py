@@ -40,6 +40,33 @@ class JointLimits:
 
 
 @dataclass(frozen=True)
+class Comfort:
+    """Where an agent's moving joints are at ease, in the joint order of its reduced model; all arrays (n,).
+
+    A joint at q costs weight u^4 + square_weight u^2, where u is the share of the room on that side of its neutral
+    angle that it has used: nothing at the neutral angle, one weight at the end of the room, much more beyond it.
+
+    Attributes:
+        neutral: angle that costs nothing [rad].
+        room_lower, room_upper: comfortable way from there down and up, both positive [rad].
+        weight: of u^4.
+        square_weight: of u^2.
+    """
+
+    neutral: Array
+    room_lower: Array
+    room_upper: Array
+    weight: Array
+    square_weight: Array
+
+    def cost(self, q: Array) -> Array:
+        """Return what joint angles (..., n) cost, all joints together (...)."""
+        away = q - self.neutral
+        squared = (away / np.where(away > 0.0, self.room_upper, self.room_lower)) ** 2
+        return np.asarray(squared**2 @ self.weight + squared @ self.square_weight)
+
+
+@dataclass(frozen=True)
 class HalfSpace:
     """The set ``normal . p_world >= offset`` that an agent's grasp point must stay in (eq. 14).
 
@@ -102,6 +129,7 @@ class Agent:
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
         workspace: half-space that the grasp point must stay in, or None.
         grasp: what its hold transmits.
+        comfort: where its joints are at ease, or None for one who does not mind.
     """
 
     name: str
@@ -114,6 +142,7 @@ class Agent:
     posture: Array
     workspace: HalfSpace | None = None
     grasp: Grasp = Grasp()
+    comfort: Comfort | None = None
 
     @property
     def moving_joints(self) -> tuple[str, ...]:

@@ -10,13 +10,15 @@ from pydantic import BeforeValidator, Field
 from liftopt.files.entries import entry, number
 from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
+from liftopt.scenario.presets import NATURAL
 
 Kind = Literal["person", "robot"]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 NAMES = "1 to 32 letters, digits or _, a letter first"
 FARTHEST = 10.0  # [m] from the origin
+OF_PERSON, OF_ROBOT = NATURAL["person"], NATURAL["robot"]  # where the preset is another, a scenario fills in its own
 GRASPS = Literal["point", "wrench"]
-Weight = Annotated[float, number("weight of the squared joint torques in the objective", "", 0.0, 1e6)]
+Weight = Annotated[float, number("weight of squared torques, as shares of strength in preset natural", "", 0.0, 1e6)]
 Length = Annotated[float, number("", "m", -FARTHEST, FARTHEST)]
 
 
@@ -51,13 +53,15 @@ class Person(Section):
             360.0,
         ),
     ] = None
-    grasp: Annotated[GRASPS, entry("a force at a point, or a hand that also transmits moments")] = "point"
+    grasp: Annotated[GRASPS, entry("a force at a point, or a hand that also transmits moments")] = OF_PERSON["grasp"]
     # Both largest moments are estimates: about what a wrist holds in the weaker directions, and a small gripper.
     max_grasp_moment: Annotated[float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 10.0
-    grasp_turn_deg: Annotated[float, number("largest turn of the hand in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
+    grasp_turn_deg: Annotated[float, number("largest turn of the hand in a wrench grasp", "deg", 1.0, 180.0)] = (
+        OF_PERSON["grasp_turn_deg"]
+    )
     contact: Annotated[Literal["grip", "flat"], entry("a hand that grips, or a flat one that only pushes up")] = "grip"
     friction: Annotated[float, number("friction coefficient under a flat hand", "", 0.01, 10.0)] = 0.5
-    weight: Weight = 1.0
+    weight: Weight = OF_PERSON["weight"]
 
 
 class Tool(Section):
@@ -86,10 +90,10 @@ class Robot(Section):
     base_height: Annotated[float, number("height of the robot's base above the floor", "m", 0.0, 2.0)] = 0.915
     base: Pose = Pose()
     tool: Tool = Tool()
-    grasp: Annotated[GRASPS, entry("a force at a point, or a gripper that also transmits moments")] = "point"
+    grasp: Annotated[GRASPS, entry("a force at a point, or a gripper that also transmits moments")] = OF_ROBOT["grasp"]
     max_grasp_moment: Annotated[float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 5.0
     grasp_turn_deg: Annotated[float, number("largest turn of the gripper in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
-    weight: Weight = 1.0
+    weight: Weight = OF_ROBOT["weight"]
 
     @property
     def height_key(self) -> str:

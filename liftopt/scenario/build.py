@@ -116,6 +116,9 @@ def task_of(scenario: Scenario) -> LiftTask:
         agent_weights=tuple(agent.weight for agent in scenario.agents.values()),
         acceleration_weight=objective.acceleration_weight,
         force_weight=objective.force_weight,
+        range_weight=objective.range_weight,
+        tilt_weight=objective.tilt_weight,
+        shares=objective.preset == "natural",
         max_grasp_force=limits.max_grasp_force,
         balance_tolerance=limits.balance_tolerance,
     )

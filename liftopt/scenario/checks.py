@@ -7,7 +7,6 @@ from collections import Counter
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import FREE
 from liftopt.files.suggestions import did_you_mean, nearest
-from liftopt.multibody.solids import FLOOR
 from liftopt.scenario.agents import NAME, NAMES
 from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lead, stand_of
@@ -16,7 +15,7 @@ from liftopt.scenario.urdf_files import urdf_files
 
 OWN_PLACE = "give the object's own x, y and z"
 # Names that results have for something else: attributes objective_<agent>, variables grasp_<...>.
-TAKEN = ("acceleration", "force", "limit", "error", "bar", "grasp", "schema", "table")
+TAKEN = ("acceleration", "force", "range", "tilt", "limit", "error", "bar", "grasp", "schema", "table")
 ELSEWHERE = "is the name of something else"
 
 
@@ -51,6 +50,10 @@ def _check_names(scenario: ScenarioFields) -> None:
 
 
 def _check_obstacles(scenario: ScenarioFields) -> None:
+    if not scenario.obstacles:
+        return
+    from liftopt.multibody.solids import FLOOR  # with NumPy, which most entries are checked without
+
     seen = {*scenario.agents, scenario.object.name, FLOOR.owner}
     for obstacle in scenario.obstacles:
         if obstacle.name in seen:
@@ -72,6 +75,8 @@ def _check_weights(scenario: ScenarioFields) -> None:
     weights |= {
         "acceleration_weight": objective.acceleration_weight,
         "force_weight": objective.force_weight,
+        "range_weight": objective.range_weight,
+        "tilt_weight": objective.tilt_weight,
     }
     if not any(weights.values()):
         raise InputError("objective", weights, "at least one weight must be above 0")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from liftopt.scenario.agents import NAME
+from liftopt.scenario.agents import KINDS, NAME
 from liftopt.scenario.model import REQUIRED, SCHEMA, Scenario
+from liftopt.scenario.presets import OBJECTIVE, defaults_at
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 FILE_NAME = "scenario.schema.json"
@@ -20,6 +21,12 @@ def scenario_json_schema() -> dict[str, Any]:
     made["properties"] = {"schema": version, **made["properties"]}
     made["properties"]["agents"]["propertyNames"] = {"pattern": f"^{NAME.pattern}$"}
     made["required"] = list(REQUIRED)
+    for section, of in (("Objective", OBJECTIVE), *((kind.__name__, name) for name, kind in KINDS.items())):
+        for key, field in made["$defs"][section]["properties"].items():
+            if by_preset := defaults_at(f"{of}.{key}"):
+                field.pop("default")
+                told = ", ".join(f"{value} with preset {preset}" for preset, value in by_preset.items())
+                field["description"] += f"; by default {told}"
     return made
 
 

@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 from liftopt.files.section import about, allowed, sections_in
 from liftopt.scenario.agents import KINDS
 from liftopt.scenario.keys import AGENTS
+from liftopt.scenario.presets import defaults_at
 
 DEFAULT_TEAM = {"human": "person", "robot": "robot"}  # of the shipped scenarios
 
@@ -39,5 +40,12 @@ def describe(of: type[BaseModel], agents: Mapping[str, str]) -> Iterator[tuple[s
     """Yield the dotted key of every entry and what it holds: meaning, range and default; arguments as ``fields_of``."""
     for key, field in fields_of(of, agents):
         if not sections_in(field):
-            has_default = not field.is_required() and field.default not in (None, ())
-            yield key, f"{about(field)}: {allowed(field)}" + (f"; default {field.default}" if has_default else "")
+            yield key, f"{about(field)}: {allowed(field)}{_default(key, field, agents)}"
+
+
+def _default(key: str, field: FieldInfo, agents: Mapping[str, str]) -> str:
+    """Return the end of a line that says what a field is by default: of what presets differ in, by each of them."""
+    first, _, rest = key.partition(".")
+    if by_preset := defaults_at(f"{agents.get(first, first)}.{rest}"):
+        return "; default " + ", ".join(f"{value} ({preset})" for preset, value in by_preset.items())
+    return "" if field.is_required() or field.default in (None, ()) else f"; default {field.default}"

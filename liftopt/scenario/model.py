@@ -5,8 +5,9 @@ SI units; radians unless the key says otherwise. The world frame has Z up and X 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from liftopt.scenario.fields import ScenarioFields, safe_name
 from liftopt.scenario.file import read_tables
 from liftopt.scenario.keys import Changes, changes_in, leaves, path_of, set_entry, value_at
 from liftopt.scenario.listing import describe
+from liftopt.scenario.presets import preset_of, with_defaults, without_preset
 from liftopt.scenario.refusals import refusal
 from liftopt.scenario.schema1 import as_schema_2
 
@@ -34,6 +36,11 @@ class Scenario(ScenarioFields):
     Raises:
         InputError: a value has the wrong type or is out of its range, or two values contradict each other.
     """
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_preset(cls, values: Any) -> Any:
+        return with_defaults(values) if isinstance(values, Mapping) else values
 
     @model_validator(mode="after")
     def _agrees(self) -> Scenario:
@@ -60,6 +67,8 @@ class Scenario(ScenarioFields):
     def replace(self, changes: Mapping[str, Any]) -> Scenario:
         """Return the scenario with some entries changed; this one stays as it is.
 
+        Another ``objective.preset`` brings its own weights and grasps; those among ``changes`` stand.
+
         Args:
             changes: value by dotted key, ``{"object.mass": 3.0, "human.stature": 1.6}``; an agent is addressed by its
                 name, a value may be a section.
@@ -67,10 +76,7 @@ class Scenario(ScenarioFields):
         Raises:
             InputError: a key is unknown, or the result is no scenario.
         """
-        tables = self.to_dict()
-        for key, value in changes_in(changes):
-            set_entry(tables, key, value)
-        return scenario_from_dict(tables)
+        return scenario_from_dict(_changed(self.to_dict(), changes))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the scenario as nested plain values as a file has them, all defaults filled in."""
@@ -92,7 +98,8 @@ def load_scenario(source: str | Path | None = None, changes: Changes = ()) -> Sc
     Args:
         source: path of the file, or the name of a shipped scenario (a str); None is ``"table5"``.
         changes: entries that differ: value by dotted key, as ``Scenario.replace`` takes them, or texts ``KEY=VALUE``
-            as the command line has them; later ones win.
+            as the command line has them; later ones win. Another ``objective.preset`` brings its own weights and
+            grasps; those among the changes stand.
 
     Raises:
         InputError: the file cannot be read, is not TOML, or does not describe a scenario.
@@ -101,9 +108,7 @@ def load_scenario(source: str | Path | None = None, changes: Changes = ()) -> Sc
     tables = _schema_2(tables)
     with suppress(InputError):  # a file name need not be a name
         tables.setdefault("name", safe_name(path.stem))
-    for key, value in changes_in(changes):
-        set_entry(tables, key, value)
-    return _scenario(tables)
+    return _scenario(_changed(tables, changes))
 
 
 def scenario_from_dict(tables: Mapping[str, Any]) -> Scenario:
@@ -113,6 +118,21 @@ def scenario_from_dict(tables: Mapping[str, Any]) -> Scenario:
         InputError: naming the key that is missing, unknown or wrong.
     """
     return _scenario(_schema_2(tables))
+
+
+def _changed(tables: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
+    """Return the tables of a scenario with some entries changed; another preset drops what the one before says."""
+    wanted = changes_in(changes)
+    changed = _with_entries(deepcopy(dict(tables)), wanted)
+    if preset_of(changed) == preset_of(tables):
+        return changed
+    return _with_entries(without_preset(tables), wanted)
+
+
+def _with_entries(tables: dict[str, Any], entries: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    for key, value in entries:
+        set_entry(tables, key, deepcopy(value))
+    return tables
 
 
 def _schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:

@@ -25,8 +25,9 @@ def as_schema_2(tables: Mapping[str, Any]) -> dict[str, Any]:
     if isinstance(objective, Mapping):
         result["objective"] = weights
     # What files meant before there was a choice.
-    for section, meant in (("task", {"rest": "acceleration"}), ("limits", {"clearance": "off"})):
-        given = result.get(section, {} if section == "limits" else None)
+    meant = {"task": {"rest": "acceleration"}, "objective": {"preset": "paper"}, "limits": {"clearance": "off"}}
+    for section, entries in meant.items():
+        given = result.get(section, None if section == "task" else {})
         if isinstance(given, Mapping):
-            result[section] = {**meant, **given}
+            result[section] = {**entries, **given}
     return result

@@ -4,16 +4,30 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+from pydantic import model_validator
+
 from liftopt.files.entries import OFF, OrOff, entry, free_number, number, whole
 from liftopt.files.section import Section
+from liftopt.scenario.presets import DEFAULT, NATURAL, OBJECTIVE, Preset, objective_with_defaults
+
+OWN = NATURAL[OBJECTIVE]
 
 
 class Objective(Section):
     """What is minimised: the preset names the terms, each weighted; an agent's weight stands with the agent."""
 
-    preset: Annotated[Literal["paper"], entry("which terms: the paper's eq. 10")] = "paper"
-    acceleration_weight: Annotated[float, number("weight of the accelerations squared", "", 0.0, 1e6)] = 0.5
-    force_weight: Annotated[float, number("weight of the grasp forces squared", "", 0.0, 1e6)] = 0.01
+    preset: Annotated[Preset, entry("a natural motion, or the terms of the paper's eq. 10")] = DEFAULT
+    acceleration_weight: Annotated[float, number("weight of the accelerations squared", "", 0.0, 1e6)] = OWN[
+        "acceleration_weight"
+    ]
+    force_weight: Annotated[float, number("weight of the grasp forces squared", "", 0.0, 1e6)] = OWN["force_weight"]
+    range_weight: Annotated[float, number("weight of joints away from ease", "", 0.0, 1e6)] = OWN["range_weight"]
+    tilt_weight: Annotated[float, number("weight of (tilt / 10 deg) squared", "", 0.0, 1e6)] = OWN["tilt_weight"]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_preset(cls, values: object) -> object:
+        return objective_with_defaults(values)
 
 
 class Limits(Section):

@@ -94,7 +94,7 @@ class Candidate:
             notes: what the user should know.
         """
         motion, team = motion_at(self.problem, self.spline, self.result.x, self.spline.phase), self.problem.team
-        terms, weights = objective_terms(motion), objective_weights(self.problem)
+        terms, weights = objective_terms(self.problem, motion), objective_weights(self.problem)
         urdfs = {agent.name: agent.urdf for agent in team.agents} | {team.object.name: team.object.urdf}
         return Solution(
             scenario=self.scenario,

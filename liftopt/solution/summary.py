@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from liftopt.solution.solution import Solution
 
 
-AGENT_UNIT = "N^2 m^2 s"  # of an agent's part of the objective
-TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s"}
+AGENT_UNITS = {"paper": "N^2 m^2 s", "natural": "s"}  # of an agent's part of the objective, by preset
+TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s", "range": "s", "tilt": "s"}
 
 
 def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[str] = ()) -> dict[str, Any]:
@@ -162,7 +162,8 @@ def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, A
 
 
 def _objective(solution: Solution) -> dict[str, Any]:
-    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), AGENT_UNIT) | TERM_UNITS
+    of_agents = AGENT_UNITS[solution.scenario.objective.preset]
+    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), of_agents) | TERM_UNITS
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {

@@ -144,7 +144,7 @@ def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Ch
 
 def _objective(problem: Problem, motion: Motion, result: SolverResult) -> Check:
     """The solver's objective against Pinocchio's torques: a wrong kernel would show here."""
-    terms, weights = objective_terms(motion), objective_weights(problem)
+    terms, weights = objective_terms(problem, motion), objective_weights(problem)
     ours = sum(weights[name] * value for name, value in terms.items())
     error = abs(ours - result.objective) / max(1.0, abs(ours))
     return Check("objective by Pinocchio", error, OBJECTIVE, "relative", "")

@@ -121,6 +121,7 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "status": solution.status,
         "verified": int(solution.solved),
         "objective": solution.objective,
+        "preset": solution.scenario.objective.preset,
         "iterations": solution.iterations,
         "intervals": solution.intervals,
         "max_violation": solution.verification.max_violation,

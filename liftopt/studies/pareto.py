@@ -215,7 +215,7 @@ class _Walk:
 
 def _point(candidate: Candidate, pair: tuple[str, str]) -> Point:
     motion = candidate.at(candidate.spline.phase * candidate.problem.task.duration)
-    terms, agents = objective_terms(motion), candidate.scenario.agents
+    terms, agents = objective_terms(candidate.problem, motion), candidate.scenario.agents
     one, other = pair
     row = [agent.name for agent in motion.agents].index(one)
     share = float(np.nanmean(shares(motion.agents)[row]))

@@ -144,7 +144,7 @@ def figures(candidate: Candidate) -> dict[str, float]:
     """Return ``SensitivityStudy.figures`` of a lift."""
     problem, spline, x = candidate.problem, candidate.spline, candidate.result.x
     motion = motion_at(problem, spline, x, spline.phase)
-    terms, weights = objective_terms(motion), objective_weights(problem)
+    terms, weights = objective_terms(problem, motion), objective_weights(problem)
     found = {"objective": sum(weights[name] * value for name, value in terms.items())}
     for agent, share in zip(motion.agents, shares(motion.agents), strict=True):
         found[f"effort {agent.name}"] = terms[agent.name]

@@ -21,6 +21,7 @@ pair = lo.Scenario(
         start={"height": 0.8, "human_distance": 0.4},
         end={"height": 1.2, "human_distance": 0.4},
     ),
+    objective=lo.Objective(preset="paper"),
 )
 solution = lo.solve(pair)
 print(solution.status)

@@ -29,6 +29,7 @@ team = lo.Scenario(
         start={"height": 0.9, "human_distance": 0.4},
         end={"height": 1.3, "human_distance": 0.4},
     ),
+    objective=lo.Objective(preset="paper"),
 )
 solution = lo.solve(team)
 print(solution.status)

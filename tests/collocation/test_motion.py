@@ -13,7 +13,7 @@ from liftopt.collocation.spline import RestToRestSpline
 def test_terms_add_up_to_the_solvers_objective(small_lift: Problem, solved: SolverResult) -> None:
     """Weighted integrals by Pinocchio against f of the NLP."""
     spline = RestToRestSpline(10)
-    terms = objective_terms(motion_at(small_lift, spline, solved.x, spline.phase))
+    terms = objective_terms(small_lift, motion_at(small_lift, spline, solved.x, spline.phase))
     weights = objective_weights(small_lift)
     assert list(terms) == ["human", "robot", "acceleration", "force"] == list(weights)
     np.testing.assert_allclose(sum(weights[name] * terms[name] for name in terms), solved.objective, rtol=1e-12)

@@ -87,9 +87,9 @@ def test_balance_rows(tolerance: float, rows: int, problem: Problem, make_task: 
 
 
 def test_parameters_hold_period_models_and_weights(problem: Problem, make_task: Callable[..., LiftTask]) -> None:
-    """Sizes from the kernels, T first in each part; NaN nowhere."""
+    """Sizes from the kernels, squares weighted on either side of zero, T first in each part; NaN nowhere."""
     p = problem.parameters
-    sizes = [part.kernel.n_p + part.kernel.n_squared + part.kernel.n_y for part in problem.parts]
+    sizes = [part.kernel.n_p + 2 * part.kernel.n_squared + part.kernel.n_y for part in problem.parts]
     assert len(p) == sum(sizes) == problem.nlp.p.shape[0] and np.isfinite(p).all()
     assert (p[np.cumsum([0, *sizes[:-1]])] == problem.task.duration).all()
     slow = replace(problem, task=make_task(duration=4.0)).parameters

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson
-from liftopt.crosscheck.instant import instant
+from liftopt.crosscheck.instant import Coordinates, instant
+from liftopt.crosscheck.integrand import integrand
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of, task_of
@@ -117,6 +119,18 @@ def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models
     np.testing.assert_allclose(human.tau[:, human.moving], arms.tau[:, :first], atol=1e-5)
     assert np.all(arms.v[[0, -1]] == 0.0)
     assert np.all(arms.a[[0, -1]] == 0.0)
+
+
+def test_integrand_of_a_natural_lift_adds_up_to_its_objective(solved: Callable[..., Any]) -> None:
+    """By the trapezoid rule over the knots of the spline's own solution, torques and angles on both sides."""
+    grasps = ("human.grasp=point", "robot.grasp=point")
+    natural = solved("table5", *CHEAP, *grasps, "objective.preset=natural").solution
+    agents, task = agents_of(natural.scenario), task_of(natural.scenario)
+    at = Coordinates.of(agents, task)
+    points = points_of(natural, at)
+    y = np.hstack([points.q, points.v, points.a, points.force, points.tau])
+    values = np.asarray(ca.DM(integrand(agents, task, at, ca.DM(y.T)))).ravel()
+    assert np.trapezoid(values, natural.time) == pytest.approx(natural.objective, rel=1e-9)
 
 
 def test_verdict_needs_every_mesh_to_bring_the_optima_together():

@@ -65,7 +65,13 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "start": {"height": 0.9, "human_distance": 0.40, "pitch_deg": 0.0},
             "end": {"height": 1.4, "human_distance": 0.40, "pitch_deg": 0.0},
         },
-        "objective": {"preset": "paper", "acceleration_weight": 0.5, "force_weight": 0.01},
+        "objective": {
+            "preset": "paper",
+            "acceleration_weight": 0.5,
+            "force_weight": 0.01,
+            "range_weight": 0.0,
+            "tilt_weight": 0.0,
+        },
         "limits": {
             "table_roll_deg": 10.0,
             "table_pitch_deg": 10.0,
@@ -102,8 +108,11 @@ def test_shipped_scenarios_differ_in_the_reading_of_table_5_and_in_the_objective
 
 def _required_only() -> dict[str, Any]:
     data = DEFAULT.to_dict()
-    for section in ("objective", "limits", "solver", "refine", "name"):
+    for section in ("limits", "solver", "refine", "name"):
         del data[section]
+    data["objective"] = {"preset": "paper"}
+    for agent in data["agents"].values():
+        del agent["weight"], agent["grasp"], agent["grasp_turn_deg"]
     del data["agents"]["robot"]["base_height"], data["agents"]["robot"]["tool"], data["agents"]["robot"]["base"]
     return data
 

@@ -53,6 +53,7 @@ def scenario_of(agents: dict[str, Any], lifted: dict[str, Any]) -> Scenario:
             "agents": agents,
             "object": {"name": "crate", "mass": 4.0, "depth": 0.45, "width": 0.4, "height": 0.1, **lifted},
             "task": {"standing_distance": 1.9, "start": place, "end": {**place, "height": 1.3}},
+            "objective": {"preset": "paper"},
         }
     )
 

@@ -16,6 +16,7 @@ from liftopt.commands import pareto as pareto_command
 from liftopt.commands import sensitivity as sensitivity_command
 from liftopt.errors import InputError
 from liftopt.multibody.trajectory import limit_share
+from liftopt.scenario.build import task_of
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.studies.parameters import parameters_of
 from liftopt.studies.pareto import Front, Point, pareto_front
@@ -33,7 +34,7 @@ def _candidate(team: Any) -> Any:
     motion = Motion(solution.time, solution.agents, solution.object)
     return SimpleNamespace(
         scenario=solution.scenario,
-        problem=SimpleNamespace(task=SimpleNamespace(duration=2.0), team=SimpleNamespace(agents=team.agents)),
+        problem=SimpleNamespace(task=task_of(solution.scenario), team=SimpleNamespace(agents=team.agents)),
         spline=SimpleNamespace(intervals=10, phase=np.linspace(0.0, 1.0, len(solution.time))),
         result=SimpleNamespace(objective=100.0),
         at=lambda _: motion,

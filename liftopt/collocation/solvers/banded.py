@@ -191,7 +191,10 @@ class Banded:
             return
         for i, topology in enumerate(problem.topologies):
             kernel = np.concatenate([[problem.task.duration], topology.parameters])
-            self._nlp.set_parameters(i, kernel, *problem.weights(i))
+            own = problem.weights(i)
+            self._nlp.set_parameters(
+                i, kernel, c_weight=own.above, y_weight=own.variable, c_weight_below=own.below, range=own.range
+            )
         if problem.constraints.varied:
             self._nlp.set_factors(np.concatenate([row.factors for row in problem.constraints.varied]))
 

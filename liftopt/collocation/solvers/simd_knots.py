@@ -12,6 +12,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.codegen.simd_kernels import SimdKernel
+from liftopt.collocation.objective import RANGE_ROWS
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.scatter import hessian_pattern, jacobian_pattern
 from liftopt.types import Array
@@ -30,8 +31,9 @@ class Knots:
         self.parts, self.weights, knots, lanes = parts, weights, len(weights), simd[0].lanes
         selects = [part.select for part in problem.parts]
         blocks = [part.jacobian.sparsity_out(0) for part in parts]
-        triangles = [[part.curvature.sparsity_out(0), part.squares.sparsity_out(0)] for part in parts]
-        self.n_p = sum(part.n_p + part.n_squared + part.n_y for part in parts)
+        triangles = [part.triangles for part in problem.parts]
+        self.sizes = np.array([part.sizes for part in problem.parts])
+        self.n_p = int(self.sizes.sum())
 
         at_y, at_c, at_slope, at_curvature = (
             _Interleaved.of(sizes, knots, lanes)
@@ -42,9 +44,14 @@ class Knots:
             _aligned, (at_y.end, at_c.end, at_slope.end, at_curvature.end)
         )
         self.pull, self.given = _aligned(at_c.end), [_aligned(part.n_p * lanes) for part in parts]
-        self.y_weight, self.c_weight = np.zeros(at_y.end), np.zeros(at_c.end)
+        self.y_weight, self.sides, self.c_weight = np.zeros(at_y.end), np.zeros((2, at_c.end)), np.zeros(at_c.end)
         self.at_y = [at.reshape(knots, -1) for at in at_y.places]
         self.at_c = [at.reshape(knots, -1) for at in at_c.places]
+        self.ranges = [
+            _Ranges(at[:, : part.n_range], weights)
+            for part, at in zip(problem.parts, self.at_y, strict=True)
+            if part.n_range
+        ]
 
         jacobian = jacobian_pattern(blocks, selects, weights, constraints.combine, constraints.linear)
         hessian = hessian_pattern(triangles, selects, weights)
@@ -56,14 +63,12 @@ class Knots:
         self.rows = sp.csr_matrix(constraints.linear)
         self.jacobian_map = sp.csr_matrix(jacobian.scatter @ _spread(at_slope.places, at_slope.end))
         self.jacobian_constant = jacobian.offset
-        # Columns of the Hessian's map: of each part the curvatures, the squares and the diagonal.
-        counts = np.array(
-            [[knots * t[0].nnz(), knots * t[1].nnz(), k.n_y] for t, k in zip(triangles, parts, strict=True)]
-        )
-        kind = np.repeat(np.tile([0, 1, 2], len(parts)), counts.ravel())
-        maps = [hessian.scatter[:, kind == i] for i in range(3)]
+        # Columns of the Hessian's map: of each part the curvatures, the squares, the ranges and the diagonal.
+        counts = np.array([[*(knots * t.nnz() for t in some), k.n_y] for some, k in zip(triangles, parts, strict=True)])
+        kind = np.repeat(np.tile([0, 1, 2, 3], len(parts)), counts.ravel())
+        maps = [hessian.scatter[:, kind == i] for i in (0, 1, 3, 2)]
         self.curvature_map = sp.csr_matrix(maps[0] @ _spread(at_curvature.places, at_curvature.end))
-        self.square_map, self.diagonal_map = map(sp.csr_matrix, maps[1:])
+        self.square_map, self.diagonal_map, self.range_map = map(sp.csr_matrix, maps[1:])
         self.squares = [
             _Squares(part, slopes.reshape(knots, -1), c, y)
             for part, slopes, c, y in zip(parts, at_slope.places, self.at_c, self.at_y, strict=True)
@@ -107,6 +112,8 @@ class Knots:
             by_y, pull = 2.0 * self.y_weight * self.y, 2.0 * self.c_weight * self.c
             for squares in self.squares:
                 squares.add_gradient(pull, by_y)
+            for term in self.ranges:
+                term.add_gradient(self.y, by_y)
             self.f_slope = self.select_back @ by_y
         found[1][:] = self.f_slope
 
@@ -128,10 +135,15 @@ class Knots:
         found[0][:] = self.curvature_map @ self.curvatures + sigma[0] * self.diagonal
         if squares:
             found[0][:] += self.square_map @ np.concatenate(squares)
+        if self.ranges:
+            bent = np.concatenate([term.curvatures(self.y) for term in self.ranges])
+            found[0][:] += self.range_map @ (sigma[0] * bent)
 
     def _set_f(self, f: Array | None) -> None:
         if f is not None:
             f[0] = (self.c_weight * self.c) @ self.c + (self.y_weight * self.y) @ self.y
+            for term in self.ranges:
+                f[0] += term.value(self.y)
 
     def _set_g(self, g: Array | None) -> None:
         if g is not None:
@@ -146,6 +158,7 @@ class Knots:
         self.x[:] = x
         self.y[:] = self.select @ x
         _run(self.value_calls)
+        self.c_weight[:] = np.where(self.c > 0.0, *self.sides)
         self.has_slopes, self.f_slope = False, None
 
     def _need_slopes(self) -> None:
@@ -160,15 +173,18 @@ class Knots:
             self.has_slopes = True
 
     def _set_parameters(self, p: Array) -> None:
-        self.p[:] = p
-        sizes = np.ravel([[part.n_p, part.n_squared, part.n_y] for part in self.parts])
-        pieces = np.split(p, np.cumsum(sizes)[:-1])
+        self.p[:] = p  # CasADi writes over its own
+        pieces, each = np.split(self.p, np.cumsum(self.sizes)[:-1]), self.sizes.shape[1]
+        ranges = iter(self.ranges)
         for i, part in enumerate(self.parts):
-            kernel, c_weight, y_weight = pieces[3 * i : 3 * i + 3]
+            kernel, above, below, y_weight, own_range = pieces[each * i : each * (i + 1)]
             self.given[i].reshape(part.n_p, -1)[:] = kernel[:, None]
-            self.c_weight[self.at_c[i][:, : part.n_squared]] = self.weights[:, None] * c_weight
+            for side, c_weight in zip(self.sides, (above, below), strict=True):
+                side[self.at_c[i][:, : part.n_squared]] = self.weights[:, None] * c_weight
             self.y_weight[self.at_y[i]] = self.weights[:, None] * y_weight
-        self.diagonal = self.diagonal_map @ (2.0 * np.concatenate(pieces[2::3]))
+            if own_range.size:
+                next(ranges).set_parameters(own_range)
+        self.diagonal = self.diagonal_map @ (2.0 * np.concatenate(pieces[3::each]))
 
 
 @dataclass(frozen=True)
@@ -213,6 +229,39 @@ class _Squares:
         weighted = self.matrix * d[self.outputs][:, :, None]
         whole = self.matrix.transpose(0, 2, 1) @ weighted
         return np.ravel(whole[:, self.triangle[0], self.triangle[1]])
+
+
+class _Ranges:
+    """What the ranges of one part's leading knot variables cost at all knots, by distances from neutral."""
+
+    def __init__(self, at: Index, weights: Array) -> None:
+        self.at, self.weights = at, weights[:, None]
+        self.neutral = self.square = self.fourth = np.zeros(0)
+
+    def set_parameters(self, rows: Array) -> None:
+        """Take the rows of ``objective.Weights.range``."""
+        self.neutral, *factors = rows.reshape(RANGE_ROWS, -1)
+        self.square, self.fourth = np.stack(factors[:2]), np.stack(factors[2:])
+
+    def _away(self, y: Array) -> tuple[Array, Array, Array]:
+        away = y[self.at] - self.neutral
+        square, fourth = (np.where(away > 0.0, above, below) for below, above in (self.square, self.fourth))
+        return away, self.weights * square, self.weights * fourth
+
+    def value(self, y: Array) -> float:
+        """Return what they cost together."""
+        away, square, fourth = self._away(y)
+        return float(((square + fourth * away**2) * away**2).sum())
+
+    def add_gradient(self, y: Array, by_y: Array) -> None:
+        """Add the derivatives by the knot variables."""
+        away, square, fourth = self._away(y)
+        by_y[self.at] += (2.0 * square + 4.0 * fourth * away**2) * away
+
+    def curvatures(self, y: Array) -> Array:
+        """Return the second derivatives, knot by knot."""
+        away, square, fourth = self._away(y)
+        return np.ravel(2.0 * square + 12.0 * fourth * away**2)
 
 
 def _run(calls: Sequence[Any]) -> None:

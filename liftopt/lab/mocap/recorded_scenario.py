@@ -81,7 +81,7 @@ def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recor
                 "start": start,
                 "end": end,
             },
-            "objective": {"force_weight": FORCE_WEIGHT},
+            "objective": {"preset": "paper", "force_weight": FORCE_WEIGHT},
             "limits": {"table_pitch_deg": LEVEL, "table_yaw_deg": LEVEL},
         }
     )

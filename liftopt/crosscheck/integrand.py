@@ -1,0 +1,44 @@
+"""The objective's integrand at many points, as a CasADi expression, written apart from the NLP of the solve."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from liftopt.collocation.task import TILT, LiftTask
+from liftopt.crosscheck.instant import Coordinates
+from liftopt.multibody.agent import Agent, Comfort
+
+ROLL, PITCH = 3, 4
+
+
+def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: Any) -> Any:
+    """Return what the objective integrates (1, K) at points (n_y, K): q, v, a, grasp forces and torques below each."""
+    sizes = [at.n_q, at.n_q, at.n_q, at.n_force, at.n_joints]
+    q, _, a, force, tau = ca.vertsplit(points, np.cumsum([0, *sizes]).tolist())
+    total = task.acceleration_weight * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
+    first = 0
+    for agent, weight, n in zip(agents, task.agent_weights, at.joints, strict=True):
+        own, limits = slice(first, first + n), agent.limits
+        used = _shares(tau[own, :], -limits.tau_lower, limits.tau_upper) if task.shares else tau[own, :]
+        total += weight * ca.sum1(used**2)
+        if agent.comfort is not None and task.range_weight:
+            total += task.range_weight * _discomfort(agent.comfort, q[own, :])
+        first += n
+    tilting = [at.n_joints + k for k, coordinate in enumerate(at.unlocked) if coordinate in (ROLL, PITCH)]
+    return total + task.tilt_weight * ca.sum1((q[tilting, :] / TILT) ** 2) if tilting else total
+
+
+def _discomfort(comfort: Comfort, q: Any) -> Any:
+    away = q - ca.repmat(ca.DM(comfort.neutral), 1, q.size2())
+    squared = _shares(away, comfort.room_lower, comfort.room_upper) ** 2
+    return ca.mtimes(ca.DM(comfort.weight).T, squared**2) + ca.mtimes(ca.DM(comfort.square_weight).T, squared)
+
+
+def _shares(values: Any, lower: Any, upper: Any) -> Any:
+    """Return values (n, K) as shares of what there is on their side (n,) of zero."""
+    below, above = (ca.repmat(ca.DM(1.0 / side), 1, values.size2()) for side in (lower, upper))
+    return values * ca.if_else(values > 0, above, below)

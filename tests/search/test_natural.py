@@ -1,0 +1,55 @@
+"""A natural lift, searched and verified; oracles: Pinocchio in the verification, and IPOPT for the objective."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from liftopt.scenario.build import agents_of
+from liftopt.solution.solution import Solution
+
+NATURAL = ("table5", "objective.preset=natural", "solver.intervals=12")
+
+
+@pytest.fixture(scope="module")
+def natural(solved: Callable[..., Any]) -> Solution:
+    """Return Table 5 with the preset natural."""
+    solution: Solution = solved(*NATURAL).solution
+    return solution
+
+
+def test_it_is_solved_and_verified(natural: Solution) -> None:
+    assert natural.solved, natural.status
+    assert natural.verification.kkt_error <= 1e-6
+    assert set(natural.objective_terms) == {"human", "robot", "acceleration", "force", "range", "tilt"}
+    weighted = {name: natural.objective_weights[name] * value for name, value in natural.objective_terms.items()}
+    assert natural.objective == pytest.approx(sum(weighted.values()), rel=1e-12)
+
+
+def test_ipopt_finds_no_better_one(natural: Solution, solved: Callable[..., Any]) -> None:
+    """And none worse by more than 2 %: both search from several starts."""
+    other = solved(*NATURAL, "solver.name=ipopt", "solver.starts=2", "solver.tries=0").solution
+    assert other.solved, other.status
+    assert other.objective == pytest.approx(natural.objective, rel=0.02)
+
+
+def test_torques_of_both_directions_count(natural: Solution) -> None:
+    """Strength differs by direction where the torque of some joint changes its sign."""
+    human = natural["human"]
+    tau, limits = human.tau[:, human.moving], human.limits
+    assert ((tau > 0.0).any(axis=0) & (tau < 0.0).any(axis=0)).any()
+    assert (np.abs(limits.tau_upper + limits.tau_lower) > 1.0).any()
+
+
+def test_the_person_holds_more_naturally_than_with_the_papers_weights(
+    natural: Solution, solved: Callable[..., Any]
+) -> None:
+    """The cost of joint angles, in the mean over time."""
+    paper = solved("table5", "solver.intervals=12").solution
+    comfort = agents_of(natural.scenario)[0].comfort
+    assert comfort is not None
+    costs = [comfort.cost(one["human"].q[:, one["human"].moving]).mean() for one in (natural, paper)]
+    assert costs[0] < 0.5 * costs[1]
