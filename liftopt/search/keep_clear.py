@@ -29,6 +29,7 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
     """
     wanted = session.scenario.solver.starts
     clearer = session.clearer(optima[0].problem, rough) if optima else None
+    session.blocked = []
     if clearer is None:
         return [c for c in optima if c.result.objective <= PROMISING * optima[0].result.objective][:wanted]
     found: list[Candidate] = []
@@ -45,20 +46,21 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
         else:
             failed.append(attempt)
     if not found:
-        found = _other_sides(clearer, optima, failed, wanted)
+        session.blocked = failed
+        found = _other_sides(clearer, failed, wanted)
+    if not found:
+        return []
     return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
 
 
-def _other_sides(
-    clearer: Clearer, optima: Sequence[Candidate], failed: Sequence[Attempt], wanted: int
-) -> list[Candidate]:
+def _other_sides(clearer: Clearer, failed: Sequence[Attempt], wanted: int) -> list[Candidate]:
     """Return clear optima that pass on another side than the one that led nowhere."""
     found: list[Candidate] = []
-    for candidate, first in zip(optima, failed, strict=False):
-        if len(found) == wanted or clearer.deadline.passed:
+    for first in failed[:wanted]:
+        if clearer.deadline.passed:
             break
-        for avoided in (first.deep, *(frozenset({pair}) for pair in sorted(first.deep))):
-            attempt = clearer.make_clear(candidate, polish=False, avoided=avoided)
+        for avoided in dict.fromkeys((first.deep, *(frozenset({pair}) for pair in sorted(first.deep)))):
+            attempt = clearer.make_clear(first.origin, polish=False, avoided=avoided)
             if attempt.clear:
                 found.append(attempt.candidate)
                 break

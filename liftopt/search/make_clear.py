@@ -37,6 +37,7 @@ PASSING = 0.06
 FINER = 5
 # Solves before it gives up; objectives that differ by a smaller share are the same.
 ROUNDS, SAME = 6, 1e-3
+ITERATIONS = 100  # of a solve: what converges takes fewer
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,18 +45,25 @@ class Attempt:
     """What came of making an optimum clear.
 
     Attributes:
+        origin: the optimum.
         candidate: clear, or the last that was tried.
         clear: whether it is.
         deep: numbers of the pairs that overlapped at first.
     """
 
+    origin: Candidate
     candidate: Candidate
     clear: bool
     deep: frozenset[int]
 
 
 def planes_along(
-    solids: TeamSolids, problem: Problem, x: Array, pairs: Pairs, clearance: float, like: SeparatingPlanes | None = None
+    solids: TeamSolids,
+    problem: Problem,
+    x: Array,
+    pairs: Pairs,
+    distance: float,
+    crossing: frozenset[int] = frozenset(),
 ) -> SeparatingPlanes:
     """Return planes for pairs by number, at the knots of a motion ``x`` (n_x,) of a problem.
 
@@ -64,11 +72,11 @@ def planes_along(
         problem: on whose knots.
         x: the motion.
         pairs: that get rows.
-        clearance: that the scenario asks for [m].
-        like: planes whose structure is kept where it is large enough.
+        distance: that they ask for [m].
+        crossing: pairs that overlap.
     """
     knots = solid_distances(solids, problem, problem.mesh.basis[0] @ problem.unpack(x)[0], NEAR, pairs)
-    return choose_planes(solids, knots, pairs, PlaneOptions(clearance + MARGIN), like)
+    return choose_planes(solids, knots, pairs, PlaneOptions(distance, crossing), problem.planes)
 
 
 def pairs_in(solids: TeamSolids, planes: SeparatingPlanes | None) -> Pairs:
@@ -133,20 +141,25 @@ class Clearer:
             elif clear or turn == ROUNDS:
                 break
             watched = np.union1d(watched, np.flatnonzero(least < self.clearance + WATCHED))
-            now = self._solved(now, knots, watched, avoided)
+            crossing = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
+            options = PlaneOptions(self.clearance + MARGIN, crossing, avoided)
+            now = self._solved(now, knots, watched, options)
             if not now.result.converged:
                 break
-        return Attempt(clear or now, clear is not None, deep)
+        return Attempt(candidate, clear or now, clear is not None, deep)
 
-    def _solved(self, now: Candidate, knots: SolidDistances, pairs: Pairs, avoided: frozenset[int]) -> Candidate:
+    def _solved(self, now: Candidate, knots: SolidDistances, pairs: Pairs, options: PlaneOptions) -> Candidate:
         """Return what the solver makes of a candidate with new planes."""
-        options = PlaneOptions(self.clearance + MARGIN, avoided)
         problem, before = now.problem, now.result
         other = problem.apart(choose_planes(self.solids, knots, pairs, options, problem.planes))
         warm = transfer_multipliers(problem, before.multipliers, other)
         same = problem.planes is not None and other.same_structure(problem)
         result = self.solver(other).solve(
-            before.x, deadline=self.deadline, warm=replace(warm, interpolated=not same), problem=other
+            before.x,
+            deadline=self.deadline,
+            warm=replace(warm, interpolated=not same),
+            problem=other,
+            most=ITERATIONS,
         )
         return replace(now, problem=other, result=total(before, result))
 

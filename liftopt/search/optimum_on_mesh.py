@@ -12,7 +12,7 @@ from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.make_clear import pairs_in, planes_along
+from liftopt.search.make_clear import MARGIN, pairs_in, planes_along
 from liftopt.types import Array, Progress
 
 FASTEST_FIRST = (BANDED, IPOPT)
@@ -76,4 +76,4 @@ def _planes(cache: SolverCache, candidate: Candidate, problem: Problem, x: Array
     """Return planes for the pairs that a candidate has planes for, along its motion on another mesh."""
     solids = cache.solids(candidate.scenario, problem.team)
     pairs = pairs_in(solids, candidate.problem.planes)
-    return planes_along(solids, problem, x, pairs, candidate.scenario.limits.clearance or 0.0)
+    return planes_along(solids, problem, x, pairs, MARGIN + (candidate.scenario.limits.clearance or 0.0))

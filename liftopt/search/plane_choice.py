@@ -25,6 +25,8 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
 # Where two solids overlap the direction that separates them is chosen for all times together: depth along it costs its
 # square in this unit [m], and a change of direction from one knot to the next 1 - cosine of the angle.
 DEPTH = 0.1
+# Cosine of the angle between normals from one knot to the next above which they count as one direction.
+TURN = 0.85
 # Rows of two bodies are made this many at a time, so that the next planes seldom need another structure.
 ROOM = 4
 
@@ -35,10 +37,12 @@ class PlaneOptions:
 
     Attributes:
         distance: least distance of solids [m].
-        avoided: pairs by number whose first choice of a side led nowhere: another one is taken.
+        crossing: pairs by number that overlap at or between knots, for which a side is chosen.
+        avoided: of these, pairs whose first choice of a side led nowhere: another one is taken.
     """
 
     distance: float
+    crossing: frozenset[int] = frozenset()
     avoided: frozenset[int] = frozenset()
 
 
@@ -74,8 +78,13 @@ def choose_planes(
         normals = _normals(solids, found, int(p), options)
         one, other = solids.ends[p]
         between = rows[solids.bodies[one], solids.bodies[other]]
-        for k in np.flatnonzero(found.distance[:, p] < NEAR):
+        near = found.distance[:, p] < NEAR
+        for k in np.flatnonzero(near):
             between[k] += _rows(solids, found, int(p), int(k), normals[k], options.distance)
+        turns = np.einsum("ka,ka->k", normals[1:], normals[:-1]) < TURN
+        for k in np.flatnonzero(turns & near[1:] & near[:-1]):
+            at, normal = _shared(solids, found, int(p), int(k), normals)
+            between[at] += _rows(solids, found, int(p), at, normal, options.distance)
     known = {(s.one, s.other): s.rows for s in like.separations} if like else {}
     order = sorted({*rows, *known})  # what is known and no longer near asks for nothing
     made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in order)
@@ -110,6 +119,18 @@ def _rows(solids: TeamSolids, found: SolidDistances, p: int, k: int, normal: Arr
     return rows
 
 
+def _shared(solids: TeamSolids, found: SolidDistances, p: int, k: int, normals: Array) -> tuple[int, Array]:
+    """Return at which of knots k and k + 1 the other's normal is to hold too, and that normal.
+
+    What a plane separates at two knots it separates between them, where bodies move about straight; so none passes
+    through another from one knot to the next.
+    """
+    one = np.array([p])
+    later = gaps(solids, found.points[[k + 1]], normals[None, [k]], one)[0, 0]
+    earlier = gaps(solids, found.points[[k]], normals[None, [k + 1]], one)[0, 0]
+    return (k + 1, normals[k]) if later >= earlier else (k, normals[k + 1])
+
+
 def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: Array) -> list[int]:
     """Return the corners of a hull that lie nearest against the normal."""
     count = len(solids.solids[s].points)
@@ -124,9 +145,9 @@ def _normals(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOp
     other = solids.ends[p, 1]
     if solids.flat[other]:
         return np.tile([0.0, 0.0, 1.0], (len(distance), 1))
-    apart = distance > 0.0
-    if apart.all() and p not in options.avoided:
+    if p not in options.crossing:
         return exact
+    apart = distance > 0.0
     directions = _directions(solids, found, p)
     count = directions.shape[1]
     along = [gaps(solids, found.points, directions[:, d, None], np.array([p])) for d in range(count)]
@@ -136,13 +157,13 @@ def _normals(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOp
     gap = np.concatenate([gap, np.where(apart, distance, -np.inf)[:, None]], axis=1)
     cost = (np.minimum(gap - options.distance, 0.0) / DEPTH) ** 2 * (20.0 / max(1, len(distance) - 1))
     cost = np.minimum(cost, 1e6)
-    first = _shortest(cost, directions)
+    first = _cheapest(cost, directions)
     if p in options.avoided:
         chosen = directions[np.arange(len(first)), first]
         deep = distance < options.distance
         alike = np.einsum("kda,ka->kd", directions, chosen) > 0.5
         cost = cost + 1e3 * (alike & deep[:, None])
-        first = _shortest(cost, directions)
+        first = _cheapest(cost, directions)
     return directions[np.arange(len(first)), first]
 
 
@@ -156,11 +177,16 @@ def _directions(solids: TeamSolids, found: SolidDistances, p: int) -> Array:
     return np.asarray(np.einsum("kab,db->kda", axes, DIRECTIONS))
 
 
-def _shortest(cost: Array, directions: Array) -> npt.NDArray[np.int64]:
-    """Return the choice at every knot whose costs, with those of changing direction, are least in all."""
+def _cheapest(cost: Array, directions: Array) -> npt.NDArray[np.int64]:
+    """Return the choice at every knot whose costs, with those of changing direction, are least in all.
+
+    Where it changes, one of both directions has to serve at both knots: else one body would pass through the other.
+    """
     total, back = cost[0], []
     for k in range(1, len(cost)):
-        change = 1.0 - directions[k - 1] @ directions[k].T
+        cosine = directions[k - 1] @ directions[k].T
+        both = np.minimum(cost[k - 1][None, :], cost[k][:, None])  # the later at k - 1, the earlier at k
+        change = 1.0 - cosine + np.where(cosine < TURN, both, 0.0)
         through = total[:, None] + change
         back.append(through.argmin(axis=0))
         total = through.min(axis=0) + cost[k]

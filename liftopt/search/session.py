@@ -11,7 +11,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
-from liftopt.search.make_clear import Clearer
+from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.solution.solution import CUT_SHORT, StartRecord
 from liftopt.types import Progress
 
@@ -34,6 +34,7 @@ class Session:
         limit: deadline of the whole search; it begins after kernels and solvers are compiled.
         records: the starts that count, each with where it led.
         notes: what the user should know.
+        blocked: optima that could not be made clear, on one mesh, the most promising first.
         cut: where the time limit ended the search too early, in one line; empty where it did not.
     """
 
@@ -55,6 +56,7 @@ class Session:
         self.limit, self._finishing, self._stage, self.cut = NEVER, False, "", ""
         self.records: list[StartRecord] = []
         self.notes: list[str] = []
+        self.blocked: list[Attempt] = []
         problem = self.problem(self.spline)
         self.solvers(problem)
         self.postures = cache.postures(problem, scenario, self.progress)
