@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from liftopt.collocation.separating_planes import Body, SeparatingPlanes, Separation
+from liftopt.collocation.separating_planes import WORLD, Body, SeparatingPlanes, Separation
 from liftopt.search.solid_distances import SolidDistances, gaps
 from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Array
@@ -27,6 +27,13 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
 DEPTH = 0.1
 # Cosine of the angle between normals from one knot to the next above which they count as one direction.
 TURN = 0.85
+# From one knot to the next normals do not turn round: that costs so much where the cosine is smaller than this.
+FLIP, THROUGH = -0.1, 1e4
+# What it costs at a knot to pass on the other side of what stands around than the object: so much, times 1 - cosine.
+BESIDE = 2.0
+# Depth costs so much more at the ends where the task places the object, and it can hardly yield.
+FIXED = 100.0
+SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
 # Rows of two bodies are made this many at a time, so that the next planes seldom need another structure.
 ROOM = 4
 
@@ -74,21 +81,25 @@ def choose_planes(
     """
     knots = len(found.distance)
     rows: dict[tuple[Body, Body], list[list[_Row]]] = defaultdict(lambda: [[] for _ in range(knots)])
-    for p in pairs:
-        normals = _normals(solids, found, int(p), options)
+    beside: dict[int, Array] = {}  # on which side of what stands around the object passes
+    order = sorted(pairs.tolist(), key=lambda p: solids.bodies[solids.ends[p, 0]].part != len(solids.team.agents))
+    for p in order:
         one, other = solids.ends[p]
+        normals = _normals(solids, found, p, options, beside.get(int(other)))
+        if p in options.crossing and solids.bodies[one].part == len(solids.team.agents):
+            beside[int(other)] = normals
         between = rows[solids.bodies[one], solids.bodies[other]]
         near = found.distance[:, p] < NEAR
         for k in np.flatnonzero(near):
-            between[k] += _rows(solids, found, int(p), int(k), normals[k], options.distance)
+            between[k] += _rows(solids, found, p, int(k), normals[k], options.distance)
         turns = np.einsum("ka,ka->k", normals[1:], normals[:-1]) < TURN
         for k in np.flatnonzero(turns & near[1:] & near[:-1]):
-            at, normal = _shared(solids, found, int(p), int(k), normals)
-            between[at] += _rows(solids, found, int(p), at, normal, options.distance)
+            at, normal = _shared(solids, found, p, int(k), normals)
+            between[at] += _rows(solids, found, p, at, normal, options.distance)
     known = {(s.one, s.other): s.rows for s in like.separations} if like else {}
-    order = sorted({*rows, *known})  # what is known and no longer near asks for nothing
-    made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in order)
-    used = {body.part for key in order for body in key}
+    bodies = sorted({*rows, *known})  # what is known and no longer near asks for nothing
+    made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in bodies)
+    used = {body.part for key in bodies for body in key}
     return SeparatingPlanes(tuple(part for part in solids.parts if part.part in used), made)
 
 
@@ -139,15 +150,17 @@ def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: 
     return [int(i) for i in np.flatnonzero(along <= along.min() + reach)]
 
 
-def _normals(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOptions) -> Array:
-    """Return a unit normal (K, 3) of a pair at every knot."""
+def _normals(
+    solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOptions, beside: Array | None = None
+) -> Array:
+    """Return a unit normal (K, 3) of a pair at every knot; those who hold the object pass ``beside`` as it does."""
     distance, exact = found.distance[:, p], found.normal[:, p]
     other = solids.ends[p, 1]
     if solids.flat[other]:
         return np.tile([0.0, 0.0, 1.0], (len(distance), 1))
     if p not in options.crossing:
         return exact
-    apart = distance > 0.0
+    apart = (distance > 0.0) & np.isfinite(distance)
     directions = _directions(solids, found, p)
     count = directions.shape[1]
     along = [gaps(solids, found.points, directions[:, d, None], np.array([p])) for d in range(count)]
@@ -156,14 +169,19 @@ def _normals(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOp
     directions = np.concatenate([directions, np.where(apart[:, None], exact, directions[:, 0])[:, None]], axis=1)
     gap = np.concatenate([gap, np.where(apart, distance, -np.inf)[:, None]], axis=1)
     cost = (np.minimum(gap - options.distance, 0.0) / DEPTH) ** 2 * (20.0 / max(1, len(distance) - 1))
+    if {solids.bodies[s].part for s in solids.ends[p]} == {WORLD, len(solids.team.agents)}:
+        cost[[0, -1]] *= FIXED
     cost = np.minimum(cost, 1e6)
+    if beside is not None:
+        cost += BESIDE * (1.0 - np.einsum("kda,ka->kd", directions, beside))
     first = _cheapest(cost, directions)
     if p in options.avoided:
         chosen = directions[np.arange(len(first)), first]
-        deep = distance < options.distance
-        alike = np.einsum("kda,ka->kd", directions, chosen) > 0.5
-        cost = cost + 1e3 * (alike & deep[:, None])
-        first = _cheapest(cost, directions)
+        # What lies between the directions of both ends is the side on which it passed; else it is where it overlapped.
+        between = (chosen @ chosen[[0, -1]].T < SAME_SIDE).all(axis=1)
+        passed = chosen[between] if between.any() else chosen[distance < options.distance]
+        alike = (np.einsum("kda,ca->kdc", directions, passed) > SAME_SIDE).any(axis=2)
+        first = _cheapest(cost + THROUGH * alike, directions)
     return directions[np.arange(len(first)), first]
 
 
@@ -186,7 +204,7 @@ def _cheapest(cost: Array, directions: Array) -> npt.NDArray[np.int64]:
     for k in range(1, len(cost)):
         cosine = directions[k - 1] @ directions[k].T
         both = np.minimum(cost[k - 1][None, :], cost[k][:, None])  # the later at k - 1, the earlier at k
-        change = 1.0 - cosine + np.where(cosine < TURN, both, 0.0)
+        change = 1.0 - cosine + np.where(cosine < TURN, both, 0.0) + np.where(cosine < FLIP, THROUGH, 0.0)
         through = total[:, None] + change
         back.append(through.argmin(axis=0))
         total = through.min(axis=0) + cost[k]
