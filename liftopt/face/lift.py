@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -60,6 +61,24 @@ class Solution(solution.Solution):
         from liftopt.viz.report import write_report
 
         write_report(self, Path(html))
+
+    def picture(
+        self, file: str | Path, *, time: float | Sequence[float] | None = None, view: str = "three-quarter"
+    ) -> None:
+        """Write a picture of everybody, the object and the forces, as PNG or JPEG; a file of that name is replaced.
+
+        Args:
+            file: where to; its folder is made if need be.
+            time: one moment or several, side by side [s]; None: start, middle and end.
+            view: from where: ``"three-quarter"``, ``"side"``, ``"front"``, ``"top"``, ``"hands"``, ``"person"``,
+                ``"robot"``, or an agent's name where there are several of a kind.
+
+        Raises:
+            InputError: there is no such view or moment, or the file cannot be written.
+        """
+        from liftopt.viz.picture import write_picture
+
+        write_picture(self, Path(file), time, view)
 
 
 def solve(scenario: Scenario, *, progress: Progress | None = None) -> Solution:

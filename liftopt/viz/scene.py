@@ -9,8 +9,9 @@ import numpy as np
 
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.lift import subject_in
-from liftopt.multibody.dh import translation
+from liftopt.multibody.dh import rotation_z, translation
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.obstacles import Obstacle
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.playback import Playback
@@ -27,6 +28,8 @@ from liftopt.viz.scene_shadow import shadow_commands
 from liftopt.viz.who import colour_of, robot_of
 
 WOOD: Colour = (0.78, 0.60, 0.38)
+CONCRETE: Colour = (0.56, 0.60, 0.66)
+SEE_THROUGH, GHOSTLY = 0.55, 0.15  # opacity of an obstacle, and of what a preset looks through
 SHADE = 0.75  # of a shirt against the arrows of who wears it
 PATH_RADIUS = 0.004  # [m]
 SAME_POINT = 1e-4  # distance below which two parts are in one place [m]
@@ -80,14 +83,15 @@ def lift_commands(cast: Cast, first: Cast | None = None) -> list[Command]:
         mesh, colour = part.mesh, _tinted(part.colour) if cast.ghost else part.colour
         if part.body != GROUND:
             mesh = mesh.seen_from(np.asarray(np.linalg.inv(cast.playback.zero[part.body])))
-        commands.append(set_object(body_path(cast, part.body) + "/" + part.name, mesh, colour, opacity))
+        path = body_path(cast, part.body) + "/" + part.name
+        commands.append(set_object(path, mesh, colour, opacity * part.opacity))
     for agent in cast.solution.agents:
         name, colour = agent.name, colour_of(cast.solution.agents, agent)
         force = cast.playback.forces[name]
         commands += arrow_commands(f"{cast.root}/force/{name}", colour, opacity)
-        path = _path_mesh(force.point)
-        if path is not None:
-            commands.append(set_object(f"{cast.root}/path/{name}", path, colour, opacity))
+        along = path_mesh(force.point)
+        if along is not None:
+            commands.append(set_object(f"{cast.root}/path/{name}", along, colour, opacity))
     return commands
 
 
@@ -109,11 +113,19 @@ def body_path(cast: Cast, body: str) -> str:
 
 
 def parts_of(cast: Cast) -> list[Part]:
-    """Return everything that is drawn of the agents and the object, at zero."""
-    lifted = cast.solution.scenario.object
+    """Return everything that is drawn of the agents, the object and the obstacles, at zero."""
+    scenario = cast.solution.scenario
     parts = [part for agent in cast.solution.agents for part in _figure(cast, agent)]
-    size = (lifted.depth, lifted.width, lifted.height)
-    return [*parts, Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003))]
+    size = (scenario.object.depth, scenario.object.width, scenario.object.height)
+    parts.append(Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)))
+    return parts + [_obstacle(obstacle) for obstacle in scenario.obstacles]
+
+
+def _obstacle(obstacle: Obstacle) -> Part:
+    """Return a box that stands in the way; see-through, so that it hides nobody."""
+    placed = translation(*obstacle.position) @ rotation_z(np.radians(obstacle.yaw_deg))
+    mesh = block((0.0, 0.0, 0.0), obstacle.box, edge=0.004).seen_from(placed)
+    return Part(GROUND, f"obstacle_{obstacle.name}", CONCRETE, mesh, SEE_THROUGH)
 
 
 def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
@@ -140,6 +152,8 @@ def _shirt(cast: Cast, person: AgentTrajectory) -> Colour:
 
 
 def _stands_still(part: Part, cast: Cast) -> bool:
+    if part.opacity < 1.0:
+        return False
     if part.body in (GROUND, cast.solution.object.name):
         return part.body == GROUND
     return bool(np.ptp(cast.playback.bodies[part.body].position, axis=0).max() < SAME_POINT)
@@ -165,7 +179,7 @@ def _tinted(colour: Colour) -> Colour:
     return (red, green, blue)
 
 
-def _path_mesh(points: Array) -> Mesh | None:
+def path_mesh(points: Array) -> Mesh | None:
     """Return a thin tube along ``points`` (K, 3), or None if the hand stays where it is."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     if along[-1] < 10.0 * PATH_RADIUS:

@@ -2,16 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from liftopt.types import Array
 from liftopt.viz.playback import ForceTrack, continuous
 from liftopt.viz.scene_commands import Command, set_object
-from liftopt.viz.scene_mesh import cylinder
+from liftopt.viz.scene_mesh import Mesh, cylinder, merged
 from liftopt.viz.scene_part import Colour
 
 SHAFT_RADIUS, HEAD_RADIUS, HEAD_LENGTH = 0.010, 0.026, 0.07  # [m]
+LONGEST = 0.40  # [m]: of the largest force shown
 SMALLEST = 1e-4  # of a scale: a node of size zero cannot be inverted
+
+
+def metres_per_newton(forces: Iterable[Array]) -> float:
+    """Return the scale of arrows for forces, each (K, 3) [N].
+
+    It is 1, 2 or 5 times a power of ten, so that a reader can tell a force from an arrow's length.
+    """
+    largest = max(1e-3, *(float(np.linalg.norm(force, axis=1).max()) for force in forces))
+    wanted = LONGEST / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted * (1.0 + 1e-9)))
+
+
+def arrow_mesh(start: Array, along: Array) -> Mesh | None:
+    """Return an arrow from ``start`` (3,), as long as ``along`` (3,) [m]; None if that is next to nothing."""
+    length = float(np.linalg.norm(along))
+    if length < HEAD_RADIUS:
+        return None
+    head = min(HEAD_LENGTH, 0.5 * length)
+    slim, neck = head / HEAD_LENGTH, start + (1.0 - head / length) * along
+    shaft = cylinder(start, neck, slim * SHAFT_RADIUS, edge=0.001)
+    return merged([shaft, cylinder(neck, start + along, slim * HEAD_RADIUS, end_radius=0.0015, edge=0.001)])
 
 
 def arrow_commands(root: str, colour: Colour, opacity: float) -> list[Command]:

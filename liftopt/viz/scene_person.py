@@ -5,6 +5,9 @@ Lengths, breadths and girths are the subject's; the fractions of them that shape
 
 from __future__ import annotations
 
+import numpy as np
+
+from liftopt.multibody.dh import rotation_x
 from liftopt.multibody.person.anthropometry import (
     HEEL_BEHIND_ANKLE,
     HIP_JOINT_SPREAD,
@@ -56,7 +59,8 @@ def person_parts(name: str, subject: Subject, shirt: Colour = SHIRT) -> list[Par
             Part(bodies[0], f"{which}_upper_arm", SKIN, upper),
             Part(bodies[1], f"{which}_forearm", SKIN, forearm),
         ]
-    hand = resting_hand(subject, LEFT).seen_from(T_person_palm(subject, LEFT))
+    # The palm of the free hand faces the thigh.
+    hand = resting_hand(subject, LEFT).seen_from(T_person_palm(subject, LEFT) @ rotation_x(-np.pi / 2))
     parts.append(Part(trunk, "left_hand", SKIN, hand))
     return parts
 

@@ -21,12 +21,12 @@ from liftopt.solution.solution import Solution
 from liftopt.viz.meshcat_files import LICENCES, VIEWER, meshcat_text
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
+from liftopt.viz.scene_arrow import metres_per_newton
 from liftopt.viz.scene_part import Colour
 from liftopt.viz.scene_stage import stage_commands
 from liftopt.viz.viewer_views import agents_in, head_of, views_of
 from liftopt.viz.who import colour_of, lead_of
 
-LONGEST_ARROW = 0.40  # [m]: of the largest force shown
 APART = 2.2  # [m] between two lifts side by side, along Y
 SECOND_SHIRT: Colour = (0.10, 0.52, 0.38)
 WORDS = {"person": "human", "robot": "robot"}
@@ -48,7 +48,7 @@ def playback_page(
         InputError: there is no such folder.
     """
     casts = _casts(solution, other, ghost, None if sawyer is None else Path(sawyer))
-    scale = _metres_per_newton(casts)
+    scale = metres_per_newton(force.force for cast in casts for force in cast.playback.forces.values())
     commands = stage_commands()
     tracks: list[dict[str, Any]] = []
     for cast in casts:
@@ -74,15 +74,6 @@ def _casts(solution: Solution, other: Solution | None, ghost: bool, sawyer: Path
         offset = (0.0, 0.0, 0.0) if ghost else (0.0, APART, 0.0)
         casts.append(Cast(other, playback_of(other), "/other", offset, ghost, sawyer, SECOND_SHIRT))
     return casts
-
-
-def _metres_per_newton(casts: Sequence[Cast]) -> float:
-    """Return the arrows' scale: 1, 2 or 5 times a power of ten, so that a reader can tell a force from its length."""
-    forces = [force.force for cast in casts for force in cast.playback.forces.values()]
-    largest = max(1e-3, *(float(np.linalg.norm(force, axis=1).max()) for force in forces))
-    wanted = LONGEST_ARROW / largest
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted * (1.0 + 1e-9)))
 
 
 def _names(casts: Sequence[Cast]) -> list[str]:

@@ -6,6 +6,9 @@ A man of 1.75 m and a Sawyer robot raise a table of 2 kg from 0.9 to 1.4 m in tw
 what do the joints of the person do?
 """
 
+import tempfile
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -16,6 +19,16 @@ print(solution.status, f"objective {solution.objective:.1f}")
 for finding in solution.assessment:
     if finding.severity in ("error", "warning"):
         print(finding.message)
+
+# %%
+# ``picture`` draws everybody at one moment or several, here at the start, in the middle and at the end.
+
+file = Path(tempfile.mkdtemp()) / "lift.png"
+solution.picture(file)
+figure = plt.figure(figsize=(9.3, 2.8))
+figure.add_axes((0.0, 0.0, 1.0, 1.0)).imshow(plt.imread(file))
+plt.axis("off")
+plt.show()
 
 # %%
 # ``to_xarray`` gives all curves with their names and units, the same as in ``solution.nc``.

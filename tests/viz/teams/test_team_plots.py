@@ -95,23 +95,23 @@ def test_forces_and_shares_of_everybody(lift: Lift) -> None:
 
 
 def test_snapshots_show_everybody(lift: Lift) -> None:
-    """An arrow a hand, in a color of its own, and everybody's body: of each the model's shapes, seen from the side."""
+    """An arrow and a path a hand, in a color of its own, none of which hides another; the words tell whose they are."""
     (plot,) = (plot for plot in plots_of(lift) if plot.name == "snapshots")
-    figure = drawn(plot, lift)
-    words = figure.get_supxlabel()
-    for axes, k in ((figure.axes[0], 0), (figure.axes[-1], -1)):
+    figure, agents = drawn(plot, lift), lift.dense.agents
+    for axes in (figure.axes[0], figure.axes[-1]):
         arrows = [patch for patch in axes.patches if hasattr(patch, "get_arrowstyle")]
-        assert len({tuple(arrow.get_edgecolor()) for arrow in arrows}) == len(lift.dense.agents)
-        for arrow, agent in zip(arrows, lift.dense.agents, strict=True):
-            np.testing.assert_allclose(arrow._posA_posB[0], agent.grasp_position[k, [0, 2]], atol=1e-12)
-        shapes = np.vstack([patch.get_xy() for patch in axes.patches if hasattr(patch, "get_xy")])
-        left, right = axes.get_xlim()
-        assert left < shapes[:, 0].min()
-        assert shapes[:, 0].max() < right
-        for x in (0.0, lift.dense.scenario.task.standing_distance):  # somebody stands there
-            assert np.any((np.abs(shapes[:, 0] - x) < 0.25) & (shapes[:, 1] < 0.05))
-    for agent in lift.dense.agents:
+        assert len({tuple(arrow.get_edgecolor()) for arrow in arrows}) == len(agents)
+        starts = np.array([arrow._posA_posB[0] for arrow in arrows])
+        apart = np.linalg.norm(starts[:, None] - starts[None], axis=2) + 1e3 * np.eye(len(starts))
+        assert apart.min() > 15.0  # pixels
+        low, high = (np.array([*axes.get_xlim(), *axes.get_ylim()])[i] for i in ([0, 3], [1, 2]))
+        for i in range(len(agents)):
+            path = axes.lines[2 * i].get_xydata()
+            assert np.all((low < path) & (path < high))
+    words = figure.get_supxlabel()
+    for agent in agents:
         assert f"by {'the person' if agent.name == 'human' else agent.name} (" in words
+    assert "Lines: paths of the hands" in words
 
 
 @pytest.mark.parametrize(
