@@ -64,6 +64,7 @@ def planes_along(
     pairs: Pairs,
     distance: float,
     crossing: frozenset[int] = frozenset(),
+    like: SeparatingPlanes | None = None,
 ) -> SeparatingPlanes:
     """Return planes for pairs by number, at the knots of a motion ``x`` (n_x,) of a problem.
 
@@ -74,9 +75,10 @@ def planes_along(
         pairs: that get rows.
         distance: that they ask for [m].
         crossing: pairs that overlap.
+        like: planes whose structure is kept where it is large enough.
     """
     knots = solid_distances(solids, problem, problem.mesh.basis[0] @ problem.unpack(x)[0], NEAR, pairs)
-    return choose_planes(solids, knots, pairs, PlaneOptions(distance, crossing), problem.planes)
+    return choose_planes(solids, knots, pairs, PlaneOptions(distance, crossing), like)
 
 
 def pairs_in(solids: TeamSolids, planes: SeparatingPlanes | None) -> Pairs:
