@@ -13,7 +13,7 @@ from liftopt.assessment.who import listed
 from liftopt.scenario.agents import Person
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import edge_heights, lead, partner, stand_of
-from liftopt.solution.finding import CAUTION, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
+from liftopt.solution.finding import CAUTION, CLEARANCE, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
 WIDTH, MOST_LINES = 80, 25
@@ -25,6 +25,7 @@ ALWAYS = {
     PERSON: ("strength", "posture", "acgih", "grasp_force", "load_share"),
     ROBOT: ("torque", "payload"),
     MATHEMATICS: ("mesh", "objective_error"),
+    CLEARANCE: ("person_robot",),
 }
 
 
@@ -61,11 +62,15 @@ def details_text(assessment: Assessment) -> str:
 
 def _headline(assessment: Assessment) -> str:
     judged = [verdict for verdict in assessment.verdicts if verdict.subject != MATHEMATICS]
-    told = [
-        f"{WORDS[verdict.severity]} for the {_told(verdict, judged)}" for verdict in judged if verdict.severity != INFO
-    ]
-    subjects = sorted(verdict.subject for verdict in judged)
+    told = [f"{WORDS[verdict.severity]} for {_whom(verdict, judged)}" for verdict in judged if verdict.severity != INFO]
+    subjects = sorted(verdict.subject for verdict in judged if verdict.subject != CLEARANCE)
     return ", ".join(told) or f"{'person and robot' if subjects == [PERSON, ROBOT] else 'everybody'} within limits"
+
+
+def _whom(verdict: Finding, verdicts: Sequence[Finding]) -> str:
+    """Return who or what a verdict is on, ``"the person"``, ``"clearance"``."""
+    told = _told(verdict, verdicts)
+    return told if verdict.subject == CLEARANCE else f"the {told}"
 
 
 def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
@@ -134,7 +139,8 @@ def _lines(parts: list[Part]) -> int:
 
 
 def _word(verdict: Finding) -> str:
-    return verdict.title if verdict.subject == MATHEMATICS else WORDS[verdict.severity]
+    own = verdict.subject == MATHEMATICS or (verdict.subject == CLEARANCE and verdict.severity == INFO)
+    return verdict.title if own else WORDS[verdict.severity]
 
 
 def _explained(finding: Finding) -> list[str]:
@@ -157,9 +163,7 @@ def _item(finding: Finding, text: str) -> list[str]:
 
 
 def _caveats(assessment: Assessment) -> list[str]:
-    told = [
-        finding.title for finding in assessment if finding.code in (f"{PERSON}.strength_data", "clearance.not_checked")
-    ]
+    told = [finding.title for finding in assessment if finding.code == f"{PERSON}.strength_data"]
     return _wrapped("; ".join(dict.fromkeys(told)).capitalize()) if told else []
 
 

@@ -27,7 +27,7 @@ KINDS = ("person", "robot", OBJECT, OBSTACLE, FLOOR_KIND)
 AT_JOINT = 1.25
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolidPair:
     """Two solids that must keep apart.
 
@@ -88,22 +88,23 @@ def _between(kind: str, solids: Sequence[Solid], other: str, others: Sequence[So
 def _within(agent: Agent, solids: Sequence[Solid]) -> Iterator[SolidPair]:
     """Give the pairs within one body."""
     model = agent.reduced()
-    bearing = {solid.joint for solid in solids}
     data = model.createData()
     pin.forwardKinematics(model, data, pin.neutral(model))
+    bearing = {solid.joint for solid in solids}
+    supports = {joint: model.supports[joint].tolist() for joint in bearing}
+    paths = {two: _path(supports[two[0]], supports[two[1]]) for two in combinations(sorted(bearing), 2)}
     for one, other in combinations(solids, 2):
         if one.joint == other.joint:
             continue
-        path = _path(model, one.joint, other.joint)
+        path = paths[min(one.joint, other.joint), max(one.joint, other.joint)]
         neighbours = not bearing & set(path[1:-1])
         if neighbours and (agent.kind == "robot" or 0 in path or _at_joint(data, one, other, path)):
             continue
         yield SolidPair(one, other, agent.kind)
 
 
-def _path(model: pin.Model, one: int, other: int) -> list[int]:
-    """Return the joints from one to the other along the tree, both included."""
-    up, down = model.supports[one].tolist(), model.supports[other].tolist()
+def _path(up: Sequence[int], down: Sequence[int]) -> list[int]:
+    """Return the joints from the end of one chain to that of another, both included; both begin at the world."""
     shared = sum(1 for a, b in zip(up, down, strict=False) if a == b)
     return [*reversed(up[shared:]), *down[shared - 1 :]]
 

@@ -24,7 +24,7 @@ COLLISION = "_collision"  # ends the name of a collision shape
 END_SPHERES = ("_start", "_end")  # end the names of the spheres of a capsule, which URDF has not
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solid:
     """A capsule, a box or the half-space below the floor, fixed to one joint of a model.
 

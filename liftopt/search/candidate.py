@@ -12,6 +12,7 @@ from liftopt.collocation.motion import Motion, motion_at, objective_terms, objec
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
+from liftopt.scenario.build import obstacles_of
 from liftopt.scenario.model import Scenario
 from liftopt.solution.checks import Verification
 from liftopt.solution.solution import SOLVED, Solution, StartRecord
@@ -44,7 +45,9 @@ class Candidate:
     @cached_property
     def verification(self) -> Verification:
         """Every requirement, by Pinocchio in double precision."""
-        return verify(self.problem, self.spline, self.result, self.scenario.solver.tolerance)
+        scenario = self.scenario
+        obstacles, clearance = obstacles_of(scenario), scenario.limits.clearance
+        return verify(self.problem, self.spline, self.result, scenario.solver.tolerance, obstacles, clearance)
 
     @cached_property
     def outcome(self) -> str:

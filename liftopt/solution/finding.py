@@ -10,7 +10,7 @@ from typing import Any, overload
 # The gravest first.
 SEVERITIES = ("error", "warning", "caution", "info")
 ERROR, WARNING, CAUTION, INFO = SEVERITIES
-MATHEMATICS, PERSON, ROBOT = "mathematics", "person", "robot"
+MATHEMATICS, PERSON, ROBOT, CLEARANCE = "mathematics", "person", "robot", "clearance"
 SUBJECTS = (PERSON, ROBOT, MATHEMATICS)
 VERDICT = "verdict"
 
@@ -21,7 +21,8 @@ class Finding:
 
     Attributes:
         code: what kind it is, ``"person.posture"``: what it is about, then what was found. ``"verdict.person"``,
-            ``"verdict.robot"`` and ``"verdict.mathematics"`` lead every assessment, one for everybody who lifts.
+            ``"verdict.robot"``, ``"verdict.mathematics"`` and ``"verdict.clearance"`` lead every assessment, one for
+            everybody who lifts.
         severity: ``"error"`` (the numbers are no prediction), ``"warning"`` (a limit or a guide's value is
             exceeded, or no strength or torque is left: change something), ``"caution"`` (near a limit, or at one that
             shapes the result) or ``"info"``.
@@ -104,11 +105,11 @@ class Assessment(Sequence[Finding]):
 
     @property
     def verdicts(self) -> tuple[Finding, ...]:
-        """The verdicts on the mathematics and on everybody who lifts, the gravest first."""
+        """The verdicts on the mathematics, on clearance and on everybody who lifts, the gravest first."""
         return tuple(finding for finding in self.findings if finding.code.startswith(f"{VERDICT}."))
 
     def verdict(self, subject: str, agent: str | None = None) -> Finding:
-        """Return the verdict on ``"person"``, ``"robot"`` or ``"mathematics"``.
+        """Return the verdict on ``"person"``, ``"robot"``, ``"mathematics"`` or ``"clearance"``.
 
         Args:
             subject: what it is about.
@@ -149,5 +150,7 @@ def graver(one: str, other: str) -> str:
 def _order(finding: Finding) -> tuple[bool, int, int]:
     subject = SUBJECTS.index(finding.subject) if finding.subject in SUBJECTS else len(SUBJECTS)
     if finding.severity == ERROR and finding.subject == MATHEMATICS:  # what the others follow from
+        subject = -1
+    if finding.severity == WARNING and finding.subject == CLEARANCE:  # bodies that overlap make no motion
         subject = -1
     return not finding.code.startswith(f"{VERDICT}."), finding.rank, subject

@@ -10,6 +10,7 @@ from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
 from liftopt.scenario.model import Scenario
 from liftopt.solution.accuracy import Accuracy
 from liftopt.solution.checks import Verification
+from liftopt.solution.clearance import Clearance
 from liftopt.solution.finding import Assessment
 from liftopt.solution.infeasibility_report import InfeasibilityReason, SuggestedChange
 from liftopt.types import Array
@@ -61,6 +62,7 @@ class Solution:
         reasons: what is in the way where there is no solution, the worst first.
         suggested_changes: changes that make a solution possible, each solved and verified; the smallest first.
         assessment: what it means for the person and the robot, and how far it can be trusted, as every output tells it.
+        clearance: how far bodies keep apart between the knots too; None of what is no solution.
     """
 
     scenario: Scenario
@@ -83,6 +85,7 @@ class Solution:
     reasons: tuple[InfeasibilityReason, ...] = ()
     suggested_changes: tuple[SuggestedChange, ...] = ()
     assessment: Assessment = field(default_factory=Assessment)
+    clearance: Clearance | None = None
 
     @property
     def solved(self) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -13,16 +15,27 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.multibody.solid_pairs import solid_pairs
+from liftopt.multibody.solids import Solid
 from liftopt.multibody.trajectory import angle_between, attitude, turned
-from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, Check, Verification
+from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, TOUCH, Check, Verification
+from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
 
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
+CLEARANCE_IS_KEPT = False  # by the search; until it is, what overlaps is a warning and no failure
 AT_ENDS = 1e-9
 OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
 
 
-def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tolerance: float) -> Verification:
+def verify(
+    problem: Problem,
+    spline: RestToRestSpline,
+    result: SolverResult,
+    tolerance: float,
+    obstacles: Sequence[Solid] = (),
+    clearance: float | None = None,
+) -> Verification:
     """Measure every requirement on a solver's result.
 
     Args:
@@ -30,6 +43,8 @@ def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tol
         spline: its space of motions.
         result: where the solver stopped.
         tolerance: largest KKT error.
+        obstacles: solids that stand in the way.
+        clearance: how far bodies must keep apart [m]; None: they may overlap.
     """
     fine = motion_at(problem, spline, result.x, np.linspace(0.0, 1.0, FINER * spline.intervals + 1))
     knots = fine.every(FINER)
@@ -43,6 +58,8 @@ def verify(problem: Problem, spline: RestToRestSpline, result: SolverResult, tol
         *_ends(problem, spline, knots),
         _objective(problem, knots, result),
     ]
+    if CLEARANCE_IS_KEPT and clearance is not None:
+        checks.append(_clearance(problem, fine, obstacles, clearance))
     return Verification(tuple(checks), optimality.error, tolerance)
 
 
@@ -122,6 +139,18 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
             ways = [f"{agent.name} {label}" for label in rows.labels]
             checks.append(_worst(f"{rows.name} of the hand", worst, limit, unit, ways, motion.time))
     return checks
+
+
+def _clearance(problem: Problem, motion: Motion, obstacles: Sequence[Solid], clearance: float) -> Check:
+    """How much nearer than asked two bodies come, by coal."""
+    team = problem.team
+    agents, lifted = list(zip(team.agents, motion.agents, strict=True)), (team.object, motion.object)
+    pairs = solid_pairs(team.agents, team.object, obstacles)
+    near = pairs_nearby(motion.time, agents, lifted, pairs, clearance)
+    worst = min(near, key=lambda item: item.distance, default=None)
+    if worst is None or worst.distance >= clearance:
+        return Check("clearance", 0.0, TOUCH, "m", "")
+    return Check("clearance", clearance - worst.distance, TOUCH, "m", f"{worst.pair.told} at {worst.time:.2f} s")
 
 
 def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Check]:

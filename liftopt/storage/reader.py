@@ -18,6 +18,8 @@ from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agen
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario
 from liftopt.solution.checks import Verification
+from liftopt.solution.clearance_of import clearance_of
+from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 from liftopt.storage.netcdf_file import read_netcdf
 from liftopt.storage.older_result import urdfs_beside
@@ -134,7 +136,10 @@ def _solution(
     if "assessment" not in attributes:  # as files from before there was one
         return assessed(solution)
     return replace(
-        solution, assessment=read_assessment(str(attributes["assessment"]), [agent.kind for agent in agents])
+        solution,
+        assessment=read_assessment(str(attributes["assessment"]), [agent.kind for agent in agents]),
+        # What follows from the motion is computed again rather than stored.
+        clearance=clearance_of(between_knots(solution)) if solution.solved else None,
     )
 
 

@@ -16,6 +16,7 @@ from liftopt.multibody.agent import Kind
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz import FORMATS
+from liftopt.viz.plots_clearance import clearance
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_effort import posture_score, strength_used
 from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motion
@@ -117,6 +118,12 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
         "Height of the object's centre (a scenario's heights are those of the edges held), its tilt and speed.",
         object_motion,
     ),
+    Plot(
+        "clearance",
+        "How near bodies come over the lift, by kind of pair; below zero they overlap. How far person and robot are "
+        "apart, and how fast their nearest points move against each other.",
+        clearance,
+    ),
     AgentPlot("person", "ground_reaction", "ground_reaction", "What the ground does to {who}.", ground_reaction),
     AgentPlot(
         "person",
@@ -141,6 +148,8 @@ def plots_of(lift: Lift) -> tuple[Plot, ...]:
     agents = lift.dense.agents
     everybody = listed(who_is(agent, agents).label for agent in agents)
     for plot in PLOTS:
+        if plot.name == "clearance" and lift.dense.clearance is None:
+            continue
         if isinstance(plot, AgentPlot):
             plots += [_of(plot, agent, lift) for agent in agents if agent.kind == plot.kind]
         else:

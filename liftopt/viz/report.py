@@ -18,11 +18,13 @@ from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
 from liftopt.scenario.placement import edge_heights
 from liftopt.scenario.task import GraspPlace
+from liftopt.solution.checks import TOUCH
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_agents import force_rows, means_words, reported, subject_words, team_words
+from liftopt.viz.report_clearance import clearance_rows
 from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
@@ -88,6 +90,8 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "named": [agent.name for agent in solution.agents if not who_is(agent, solution.agents).is_alone],
         "forces": force_rows(lift, summary),
         "near_limit": 100 * NEAR_LIMIT,
+        "apart": clearance_rows(lift.dense.clearance),
+        "touch": 1e3 * TOUCH,
         "rula_assumptions": ASSUMPTIONS,
         "entries": scenario_rows(solution.scenario),
         "checks": check_rows(summary),

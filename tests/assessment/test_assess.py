@@ -36,16 +36,16 @@ def as_given(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("liftopt.assessment.assess.between_knots", lambda solution: solution)
 
 
-def test_three_verdicts_are_always_there_and_lead(light: Solution, heavy: Any) -> None:
+def test_four_verdicts_are_always_there_and_lead(light: Solution, heavy: Any) -> None:
     for solution in (light, heavy.solution, replace(light, outcome="time limit reached")):
         codes = [finding.code for finding in assess(solution)]
-        assert sorted(codes[:3]) == ["verdict.mathematics", "verdict.person", "verdict.robot"]
-        assert not [code for code in codes[3:] if code.startswith("verdict")]
+        assert sorted(codes[:4]) == ["verdict.clearance", "verdict.mathematics", "verdict.person", "verdict.robot"]
+        assert not [code for code in codes[4:] if code.startswith("verdict")]
 
 
 def test_the_gravest_comes_first(heavy: Any) -> None:
     assessment = heavy.solution.assessment
-    ranks = [finding.rank for finding in assessment[3:]]
+    ranks = [finding.rank for finding in assessment[4:]]
     assert ranks == sorted(ranks)
     assert assessment[0].severity == "warning"
     assert assessment.verdict("mathematics").severity == "info"
@@ -206,10 +206,9 @@ def test_posture_is_as_grave_as_rula_says(light: Solution) -> None:
     assert finding.severity == ("warning" if worst >= 5 else "caution" if worst >= 3 else "info")
 
 
-def test_what_is_not_checked_and_what_is_weak_is_said(light: Solution) -> None:
+def test_what_is_weak_is_said(light: Solution) -> None:
     (data,) = _of(light.assessment, "person.strength_data")
     assert "20 of 20" in data.title
-    assert _of(light.assessment, "clearance.not_checked")
     assert all(finding.source for finding in light.assessment if finding.limit is not None)
 
 
@@ -223,7 +222,7 @@ def test_an_iterate_is_not_judged_and_its_suggested_changes_name_keys(light: Sol
         suggested_changes=(SuggestedChange(("task.standing_distance",), (1.8,), "robot base 0.10 m nearer", 1.0),),
     )
     assessment = assess(failed)
-    assert [finding.severity for finding in assessment.verdicts] == ["error"] * 3
+    assert [finding.severity for finding in assessment.verdicts] == ["error"] * 4
     assert assessment[0].code == "verdict.mathematics"
     assert "infeasible: too far" in assessment[0].message
     assert not assessment.about("person") and not assessment.about("robot")

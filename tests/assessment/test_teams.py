@@ -63,7 +63,8 @@ def test_messages_name_whose_they_are_where_there_are_several(people: Solution, 
 
 def test_the_terminal_tells_everybody_under_their_name(people: Solution, robots: Solution) -> None:
     lines = verdict_text(people, None).splitlines()
-    assert lines[0] == "two_people: WARNING for the person anna, WARNING for the person ben"
+    told = "two_people: WARNING for clearance, WARNING for the person anna, WARNING for the person ben"
+    assert " ".join(lines).startswith(told)
     assert "anna (female 1.62 m, 58 kg) and ben (male 1.82 m, 84 kg) lift 8 kg" in " ".join(lines)
     assert {line for line in lines if line.startswith("Person")} == {"Person anna: WARNING", "Person ben: WARNING"}
     assert "robot" not in " ".join(lines).lower()
@@ -111,9 +112,14 @@ def test_a_robot_whose_payload_nobody_knows_is_told_so(robots: Solution, monkeyp
 
 
 def test_clearance_speaks_of_those_who_are_there(people: Solution, robots: Solution) -> None:
-    told = [solution.assessment[-1].message for solution in (people, robots)]
-    assert told[0].endswith("People and object may touch or overlap on the way.")
-    assert "Person, robots and object may touch" in told[1]
+    """By the kinds of pairs that each team has; both persons' hands are told with their names."""
+    codes = [{finding.code for finding in team.assessment.about("clearance")} for team in (people, robots)]
+    assert {"clearance.person_person", "clearance.person_object"} <= codes[0]
+    assert {"clearance.person_robot", "clearance.robot_robot", "clearance.robot_object"} <= codes[1]
+    assert not {code for code in codes[0] if "robot" in code}
+    (between,) = [finding for finding in people.assessment if finding.code == "clearance.person_person"]
+    assert "of anna and" in between.message and "of ben" in between.message
+    assert "ISO/TS 15066" not in between.message
 
 
 def test_of_what_is_no_solution_nobody_is_assessed(people: Solution) -> None:

@@ -41,7 +41,7 @@ def test_terminal_json_and_report_of_one_solve(tmp_path: Path, capsys: pytest.Ca
     solution = load_result(out)
     page = unescape(report_html(solution))
     assert told["assessment"] == solution.assessment.plain()
-    assert terminal.startswith(f"{told['name']}: WARNING for the person")
+    assert terminal.startswith(f"{told['name']}: WARNING for ")
     for finding in told["assessment"]:
         assert finding["message"] in page
         if finding["severity"] == "warning" and "." in finding["code"] and not finding["code"].startswith("verdict"):

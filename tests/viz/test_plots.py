@@ -60,6 +60,22 @@ def test_arm_is_drawn_with_flexion_positive(figures: dict[str, Figure], lift: Li
             np.testing.assert_allclose(y, sign * values[:, column], atol=1e-12)
 
 
+def test_clearance_is_drawn_as_it_was_measured(figures: dict[str, Figure], lift: Lift) -> None:
+    clearance = lift.dense.clearance
+    assert clearance is not None
+    between = clearance.of_kind("person-robot")
+    assert between is not None
+    figure = figures["clearance"]
+    for title, expected in (
+        ("Person and robot: smallest distance", 1e3 * between.distance),
+        ("Person and robot: relative speed", between.speed),
+    ):
+        np.testing.assert_allclose(_panel(figure, title).lines[0].get_ydata(), expected, atol=1e-12)
+    drawn_kinds = {line.get_label(): line.get_ydata() for line in _panel(figure, "Smallest distance").lines}
+    np.testing.assert_allclose(drawn_kinds["person-robot"], 1e3 * between.distance, atol=1e-12)
+    assert "within person" in drawn_kinds
+
+
 def _titled(title: str, joint: str, sign: int, quantity: str) -> str:
     minus = "" if sign > 0 else "\N{MINUS SIGN}"
     return f"{title} ({minus}{joint.removeprefix('human_')}): {quantity}"

@@ -106,6 +106,26 @@ def test_page_tells_the_assessment_and_nothing_else(page: str, result: Any) -> N
         assert verdict.message in unescape(page)
 
 
+def test_clearance_has_a_table_by_pair_and_time_and_no_claim_of_safety(page: str, result: Any) -> None:
+    section = re.search(r'<section id="clearance">.*?</section>', page, re.DOTALL)
+    assert section is not None
+    rows = re.findall(
+        r'<td class="name">(.*?)</td><td>.*?</td><td class="n">(.*?)</td><td class="n">(.*?) s', section[0]
+    )
+    clearance = result.solution.clearance
+    assert [row[0] for row in rows] == [item.pair.told for item in clearance.closest[: len(rows)]]
+    for (_, distance, when), item in zip(rows, clearance.closest, strict=False):
+        assert float(distance.replace("\N{MINUS SIGN}", "-")) == pytest.approx(1e3 * item.distance, abs=0.051)
+        assert float(when) == pytest.approx(item.time, abs=0.0051)
+    assert "nothing on this page says that the lift is safe" in section[0]
+    off = report_html(assessed(replace(result.solution, scenario=_without_clearance(result.solution.scenario))))
+    assert "Clearance is off: nothing keeps bodies apart." in off
+
+
+def _without_clearance(scenario: Any) -> Any:
+    return scenario.replace({"limits.clearance": "off"})
+
+
 def test_a_value_without_a_limit_is_never_ok(result: Any) -> None:
     rows = {row["name"]: row for row in check_rows(summary_dict(result.solution))}
     assert rows["balance between knots"]["state"] == rows["unserved moment"]["state"] == "no limit"
@@ -162,7 +182,7 @@ def test_report_in_a_browser(file: Path, chromium: Any) -> None:
     player.wait_for_function("window.liftopt && window.liftopt.ready")
     assert tab.evaluate("document.documentElement.scrollWidth") <= 1200
     sizes = tab.evaluate("[...document.querySelectorAll('figure svg')].map(s => s.getBoundingClientRect().height)")
-    assert len(sizes) == 11
+    assert len(sizes) == 12
     assert min(sizes) > 150
     assert complaints == []
     assert [url for url in requests if not url.startswith(("data:", "blob:", "about:"))] == [file.as_uri()]
