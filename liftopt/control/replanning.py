@@ -17,15 +17,14 @@ import time
 from dataclasses import replace
 
 from liftopt.assessment.assess import assessed
-from liftopt.collocation.problem import Problem
-from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.make_clear import MARGIN, Clearer, pairs_in, planes_along
+from liftopt.search.make_clear import Clearer
 from liftopt.search.mesh_accuracy import estimate
+from liftopt.search.optimum_on_mesh import planes_of
 from liftopt.search.session import Session
 from liftopt.search.solve import find_lift, solution_of
 from liftopt.solution.solution import Solution, StartRecord
@@ -101,7 +100,7 @@ class Replanner:
         if not problem.same_unknowns(last.problem):
             return None
         if last.problem.planes is not None and scenario.limits.clearance is not None:
-            problem = problem.apart(self._planes(scenario, problem, last, scenario.limits.clearance))
+            problem = problem.apart(planes_of(self._cache, last, scenario, problem))
         if not problem.same_structure(last.problem):
             return None
         solver = self._cache.solver(problem, scenario, scenario.solver.name, self._progress)
@@ -111,12 +110,6 @@ class Replanner:
             return None
         self.latest = Candidate(scenario, problem, last.spline, WARM, result)
         return self.latest
-
-    def _planes(self, scenario: Scenario, problem: Problem, last: Candidate, clearance: float) -> SeparatingPlanes:
-        """Return the planes of the latest plan at its motion, for the bodies as they are now."""
-        solids, planes = self._cache.solids(scenario, problem.team, self._progress), last.problem.planes
-        pairs = pairs_in(solids, planes)
-        return planes_along(solids, problem, last.result.x, pairs, clearance + MARGIN, like=planes)
 
     def _kept_clear(self, scenario: Scenario, limit: Deadline, candidate: Candidate | None) -> Candidate | None:
         """Return a plan with planes for what comes near in it now; None where that does not make it clear."""

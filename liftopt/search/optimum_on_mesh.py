@@ -10,6 +10,7 @@ from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import PRUNED, STOPPED, SolverResult
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
+from liftopt.scenario.model import Scenario
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
 from liftopt.search.make_clear import MARGIN, pairs_in, planes_along
@@ -49,7 +50,7 @@ def optimum_on_mesh(
     problem = cache.problem(scenario, spline, progress)
     start = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, spline)
     if candidate.problem.planes is not None:
-        problem = problem.apart(_planes(cache, candidate, problem, start))
+        problem = problem.apart(planes_of(cache, candidate, scenario, problem, start))
     warm = None
     if not without_multipliers:
         warm = transfer_multipliers(candidate.problem, candidate.result.multipliers, problem)
@@ -72,8 +73,19 @@ def optimum_on_mesh(
     return None
 
 
-def _planes(cache: SolverCache, candidate: Candidate, problem: Problem, x: Array) -> SeparatingPlanes:
-    """Return planes for the pairs that a candidate has planes for, along its motion on another mesh."""
-    solids = cache.solids(candidate.scenario, problem.team)
-    pairs = pairs_in(solids, candidate.problem.planes)
-    return planes_along(solids, problem, x, pairs, MARGIN + (candidate.scenario.limits.clearance or 0.0))
+def planes_of(
+    cache: SolverCache, candidate: Candidate, scenario: Scenario, problem: Problem, x: Array | None = None
+) -> SeparatingPlanes:
+    """Return planes for the pairs that a candidate has planes for, along its motion or along ``x`` (n_x,) of a problem.
+
+    Args:
+        cache: where solids come from.
+        candidate: with planes.
+        scenario: of the problem.
+        problem: on the same mesh, or of ``x``.
+        x: the motion; None: the candidate's.
+    """
+    solids, planes = cache.solids(scenario, problem.team), candidate.problem.planes
+    distance = MARGIN + (scenario.limits.clearance or 0.0)
+    along, like = (candidate.result.x, planes) if x is None else (x, None)
+    return planes_along(solids, problem, along, pairs_in(solids, planes), distance, like=like)

@@ -94,8 +94,11 @@ def choose_planes(
             between[k] += _rows(solids, found, p, int(k), normals[k], options.distance)
         turns = np.einsum("ka,ka->k", normals[1:], normals[:-1]) < TURN
         for k in np.flatnonzero(turns & near[1:] & near[:-1]):
-            at, normal = _shared(solids, found, p, int(k), normals)
-            between[at] += _rows(solids, found, p, at, normal, options.distance)
+            at, normal, gap = _shared(solids, found, p, int(k), normals)
+            # A motion that is apart stays feasible.
+            distance = options.distance if p in options.crossing else min(gap, options.distance)
+            if distance > 0.0:
+                between[at] += _rows(solids, found, p, at, normal, distance)
     known = {(s.one, s.other): s.rows for s in like.separations} if like else {}
     bodies = sorted({*rows, *known})  # what is known and no longer near asks for nothing
     made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in bodies)
@@ -130,16 +133,16 @@ def _rows(solids: TeamSolids, found: SolidDistances, p: int, k: int, normal: Arr
     return rows
 
 
-def _shared(solids: TeamSolids, found: SolidDistances, p: int, k: int, normals: Array) -> tuple[int, Array]:
-    """Return at which of knots k and k + 1 the other's normal is to hold too, and that normal.
+def _shared(solids: TeamSolids, found: SolidDistances, p: int, k: int, normals: Array) -> tuple[int, Array, float]:
+    """Return at which of knots k and k + 1 the other's normal is to hold too, that normal, and the gap along it now.
 
     What a plane separates at two knots it separates between them, where bodies move about straight; so none passes
     through another from one knot to the next.
     """
     one = np.array([p])
-    later = gaps(solids, found.points[[k + 1]], normals[None, [k]], one)[0, 0]
-    earlier = gaps(solids, found.points[[k]], normals[None, [k + 1]], one)[0, 0]
-    return (k + 1, normals[k]) if later >= earlier else (k, normals[k + 1])
+    later = float(gaps(solids, found.points[[k + 1]], normals[None, [k]], one)[0, 0])
+    earlier = float(gaps(solids, found.points[[k]], normals[None, [k + 1]], one)[0, 0])
+    return (k + 1, normals[k], later) if later >= earlier else (k, normals[k + 1], earlier)
 
 
 def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: Array) -> list[int]:
