@@ -34,7 +34,7 @@ def explain_blocked(session: Session, spline: RestToRestSpline) -> Found | None:
     if clearer is None:
         return None
     pairs = np.array(sorted(attempt.deep), dtype=np.int64)
-    planes = planes_along(clearer.solids, problem, x, pairs, clearer.clearance, attempt.deep)
+    planes = planes_along(clearer.solids, problem, x, pairs, clearer.clearance, 0.0, attempt.deep)
     apart = problem.apart(planes)
     least = find_least_violation(apart, [x], session.deadline)
     if least is None:

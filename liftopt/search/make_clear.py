@@ -62,7 +62,8 @@ def planes_along(
     problem: Problem,
     x: Array,
     pairs: Pairs,
-    distance: float,
+    clearance: float,
+    margin: float = MARGIN,
     crossing: frozenset[int] = frozenset(),
     like: SeparatingPlanes | None = None,
 ) -> SeparatingPlanes:
@@ -73,12 +74,20 @@ def planes_along(
         problem: on whose knots.
         x: the motion.
         pairs: that get rows.
-        distance: that they ask for [m].
+        clearance: that the scenario asks for [m].
+        margin: that they ask for beside it [m].
         crossing: pairs that overlap.
         like: planes whose structure is kept where it is large enough.
     """
     knots = solid_distances(solids, problem, problem.mesh.basis[0] @ problem.unpack(x)[0], NEAR, pairs)
-    return choose_planes(solids, knots, pairs, PlaneOptions(distance, crossing), like)
+    return choose_planes(
+        solids, knots, pairs, PlaneOptions(clearance + margin, margin, knot_times(problem), crossing), like
+    )
+
+
+def knot_times(problem: Problem) -> Array:
+    """Return the times (K,) of a problem's knots [s]."""
+    return np.asarray(problem.mesh.phase * problem.task.duration)
 
 
 def pairs_in(solids: TeamSolids, planes: SeparatingPlanes | None) -> Pairs:
@@ -144,7 +153,7 @@ class Clearer:
                 break
             watched = np.union1d(watched, np.flatnonzero(least < self.clearance + WATCHED))
             crossing = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
-            options = PlaneOptions(self.clearance + MARGIN, crossing, avoided)
+            options = PlaneOptions(self.clearance + MARGIN, MARGIN, knot_times(now.problem), crossing, avoided)
             now = self._solved(now, knots, watched, options)
             if not now.result.converged:
                 break

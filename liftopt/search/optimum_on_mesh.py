@@ -13,7 +13,7 @@ from liftopt.errors import SolverError
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.make_clear import MARGIN, pairs_in, planes_along
+from liftopt.search.make_clear import pairs_in, planes_along
 from liftopt.types import Array, Progress
 
 FASTEST_FIRST = (BANDED, IPOPT)
@@ -86,6 +86,6 @@ def planes_of(
         x: the motion; None: the candidate's.
     """
     solids, planes = cache.solids(scenario, problem.team), candidate.problem.planes
-    distance = MARGIN + (scenario.limits.clearance or 0.0)
+    clearance = scenario.limits.clearance or 0.0
     along, like = (candidate.result.x, planes) if x is None else (x, None)
-    return planes_along(solids, problem, along, pairs_in(solids, planes), distance, like=like)
+    return planes_along(solids, problem, along, pairs_in(solids, planes), clearance, like=like)

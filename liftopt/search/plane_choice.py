@@ -34,6 +34,8 @@ BESIDE = 2.0
 # Depth costs so much more at the ends where the task places the object, and it can hardly yield.
 FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
+# The object may rest on what stands at an end, this deep [m], and leaves it with this acceleration at least [m/s^2].
+TOUCHING, LEAVING = 1e-3, 0.2
 # Rows of two bodies are made this many at a time, so that the next planes seldom need another structure.
 ROOM = 4
 
@@ -44,11 +46,15 @@ class PlaneOptions:
 
     Attributes:
         distance: least distance of solids [m].
+        margin: of that, what is more than the scenario asks for [m].
+        time: (K,) of the knots [s]; None: nothing is known of it.
         crossing: pairs by number that overlap at or between knots, for which a side is chosen.
         avoided: of these, pairs whose first choice of a side led nowhere: another one is taken.
     """
 
     distance: float
+    margin: float = 0.0
+    time: Array | None = None
     crossing: frozenset[int] = frozenset()
     avoided: frozenset[int] = frozenset()
 
@@ -89,14 +95,14 @@ def choose_planes(
         if p in options.crossing and solids.bodies[one].part == len(solids.team.agents):
             beside[int(other)] = normals
         between = rows[solids.bodies[one], solids.bodies[other]]
-        near = found.distance[:, p] < NEAR
+        near, wanted = found.distance[:, p] < NEAR, _wanted(solids, found, p, options)
         for k in np.flatnonzero(near):
-            between[k] += _rows(solids, found, p, int(k), normals[k], options.distance)
+            between[k] += _rows(solids, found, p, int(k), normals[k], float(wanted[k]))
         turns = np.einsum("ka,ka->k", normals[1:], normals[:-1]) < TURN
         for k in np.flatnonzero(turns & near[1:] & near[:-1]):
             at, normal, gap = _shared(solids, found, p, int(k), normals)
             # A motion that is apart stays feasible.
-            distance = options.distance if p in options.crossing else min(gap, options.distance)
+            distance = float(wanted[at]) if p in options.crossing else min(gap, float(wanted[at]))
             if distance > 0.0:
                 between[at] += _rows(solids, found, p, at, normal, distance)
     known = {(s.one, s.other): s.rows for s in like.separations} if like else {}
@@ -172,7 +178,7 @@ def _normals(
     directions = np.concatenate([directions, np.where(apart[:, None], exact, directions[:, 0])[:, None]], axis=1)
     gap = np.concatenate([gap, np.where(apart, distance, -np.inf)[:, None]], axis=1)
     cost = (np.minimum(gap - options.distance, 0.0) / DEPTH) ** 2 * (20.0 / max(1, len(distance) - 1))
-    if {solids.bodies[s].part for s in solids.ends[p]} == {WORLD, len(solids.team.agents)}:
+    if _is_placed(solids, p):
         cost[[0, -1]] *= FIXED
     cost = np.minimum(cost, 1e6)
     if beside is not None:
@@ -186,6 +192,26 @@ def _normals(
         alike = (np.einsum("kda,ca->kdc", directions, passed) > SAME_SIDE).any(axis=2)
         first = _cheapest(cost + THROUGH * alike, directions)
     return directions[np.arange(len(first)), first]
+
+
+def _is_placed(solids: TeamSolids, p: int) -> bool:
+    """Whether a pair is the object and something that stands, which hardly move against each other at the ends."""
+    return {solids.bodies[s].part for s in solids.ends[p]} == {WORLD, len(solids.team.agents)}
+
+
+def _wanted(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOptions) -> Array:
+    """Return the distance (K,) that a pair is to keep [m].
+
+    What the object rests on at an end it leaves little by little; the margin counts from there on.
+    """
+    wanted = np.full(len(found.distance), options.distance)
+    if options.time is not None and _is_placed(solids, p):
+        since = options.time - options.time[0], options.time[-1] - options.time
+        for end, passed in zip((0, -1), since, strict=True):
+            rest = found.distance[end, p]
+            if rest >= options.distance - options.margin - TOUCHING:
+                wanted = np.minimum(wanted, rest + LEAVING / 2 * passed**2)
+    return wanted
 
 
 def _directions(solids: TeamSolids, found: SolidDistances, p: int) -> Array:

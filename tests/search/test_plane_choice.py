@@ -95,7 +95,7 @@ def test_a_motion_that_is_apart_keeps_its_own_planes(
     knots = solid_distances(solids, problem, problem.mesh.basis[0] @ problem.unpack(x)[0], NEAR)
     apart = np.flatnonzero((knots.distance.min(axis=0) > 0.02) & (knots.distance.min(axis=0) < NEAR))
     assert len(apart) > 5
-    other = problem.apart(planes_along(solids, problem, x, apart, 0.02))
+    other = problem.apart(planes_along(solids, problem, x, apart, 0.02, 0.0))
     g = other.nlp.jac_g(x, other.parameters)[0].full().ravel()
     first = next(block.rows.start for block in other.constraints.blocks if block.name == "clearance")
     assert (g - other.constraints.lower)[first:].min() >= -1e-6
@@ -111,7 +111,7 @@ def test_an_overlap_is_not_passed_through(problem: Problem, solids: TeamSolids) 
     x = problem.pack(control, np.zeros(problem.layout.force.shape))
     knots = solid_distances(solids, problem, problem.mesh.basis[0] @ problem.unpack(x)[0], NEAR)
     crossed = [p for p, pair in enumerate(solids.pairs) if pair.told == "table and shelf"]
-    planes = choose_planes(solids, knots, np.array(crossed), PlaneOptions(MARGIN, frozenset(crossed)))
+    planes = choose_planes(solids, knots, np.array(crossed), PlaneOptions(MARGIN, crossing=frozenset(crossed)))
     (separation,) = planes.separations
     assert WORLD in (separation.one.part, separation.other.part)
     near = separation.active[:, 0]
