@@ -17,6 +17,7 @@ import numpy as np
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.trajectory import GRAVITY, limit_share
 from liftopt.scenario.agents import Person
+from liftopt.solution.effort import effort_in
 from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
 from liftopt.types import Array
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from liftopt.solution.solution import Solution
 
 
-AGENT_UNITS = {"paper": "N^2 m^2 s", "natural": "s"}  # of an agent's part of the objective, by preset
 TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s", "range": "s", "tilt": "s"}
 
 
@@ -162,8 +162,8 @@ def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, A
 
 
 def _objective(solution: Solution) -> dict[str, Any]:
-    of_agents = AGENT_UNITS[solution.scenario.objective.preset]
-    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), of_agents) | TERM_UNITS
+    effort = effort_in(solution.scenario).unit.replace("2", "^2")
+    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), effort) | TERM_UNITS
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {
