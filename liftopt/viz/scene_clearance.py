@@ -14,7 +14,7 @@ from liftopt.viz.scene_mesh import ball, cylinder
 from liftopt.viz.scene_part import Colour
 
 LINE: Colour = (0.42, 0.62, 0.05)
-RADIUS, END = 0.005, 0.013  # of the line and of the balls at its ends [m]
+RADIUS, END = 0.004, 0.008  # of the line and of the balls at its ends [m]
 SMALLEST = 1e-4  # [m]: a node of size zero cannot be inverted
 
 

@@ -83,7 +83,9 @@ def test_the_nearest_two_bodies_are_told_and_a_line_is_between_them(opened: Any,
     for k in (0, len(clearance.time) // 2, len(clearance.time) - 1):
         opened.run(f"liftopt.seek({clearance.time[k]})")
         nearest = clearance.between_bodies
-        assert opened.page.inner_text("#nearest-0") == f"{1e3 * nearest.distance[k]:.0f} mm"
+        apart = 1e3 * nearest.distance[k]
+        told = f"{abs(apart):.0f} mm {'deep' if apart < 0 else 'apart'}"
+        assert opened.page.inner_text("#nearest-0") == told
         assert opened.page.text_content("#pair-0") == clearance.pairs[nearest.pair[k]].told
         np.testing.assert_allclose(_placement(opened, "/lift/nearest")[:3, 3], nearest.points[k, 0], atol=DRAWN)
 

@@ -68,7 +68,8 @@
       element(`height-${i}`).textContent = `${at(lift, lift.height).toFixed(3)} m`;
       if (!lift.nearest) return;
       const frame = Math.round(Math.min(Math.max(state.time / lift.time.at(-1), 0), 1) * (lift.time.length - 1));
-      element(`nearest-${i}`).textContent = `${(1000 * lift.nearest.distance[frame]).toFixed(0)} mm`;
+      const apart = 1000 * lift.nearest.distance[frame];
+      element(`nearest-${i}`).textContent = `${Math.abs(apart).toFixed(0)} mm ${apart < 0 ? "deep" : "apart"}`;
       element(`pair-${i}`).textContent = lift.nearest.pairs[lift.nearest.pair[frame]];
     });
   }
