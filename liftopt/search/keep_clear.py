@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 from liftopt.search.candidate import Candidate
 from liftopt.search.make_clear import Attempt, Clearer
-from liftopt.search.mesh_refinement import PROMISING
-from liftopt.search.optima import each_once, is_known, objective_of
+from liftopt.search.optima import PROMISING, each_once, is_known, objective_of
 from liftopt.search.session import Session
 
 # Optima that are tried for each that is wanted, where many cannot be made clear.
@@ -51,6 +50,28 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
     if not found:
         return []
     return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
+
+
+def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return candidates of one mesh with the first of them made clear that can be, where the scenario asks for it.
+
+    Args:
+        session: of the search; it notes what cannot be made clear.
+        candidates: those that converged first, the best first.
+    """
+    clearer = session.clearer(candidates[0].problem)
+    if clearer is None:
+        return list(candidates)
+    session.blocked = []
+    for n, candidate in enumerate(candidates):
+        if not candidate.result.converged or session.deadline.passed:
+            break
+        attempt = clearer.make_clear(candidate)
+        if attempt.clear:
+            session.blocked = []
+            return [*candidates[:n], attempt.candidate, *candidates[n + 1 :]]
+        session.blocked.append(attempt)
+    return list(candidates)
 
 
 def _other_sides(clearer: Clearer, failed: Sequence[Attempt], wanted: int) -> list[Candidate]:

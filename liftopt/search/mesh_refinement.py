@@ -18,7 +18,7 @@ from liftopt.search.candidate import Candidate
 from liftopt.search.found import Found
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.mesh_accuracy import TELLING, compared, estimate, unmet
-from liftopt.search.optima import each_once, indistinguishable, is_known, objective_of
+from liftopt.search.optima import PROMISING, each_once, indistinguishable, is_known, objective_of
 from liftopt.search.optimum_on_mesh import optimum_on_mesh
 from liftopt.search.session import Session
 from liftopt.search.solve_starts import solve_starts
@@ -29,8 +29,6 @@ from liftopt.solution.verify import CLOSURE_BETWEEN_KNOTS
 # finer one takes longer (docs/tuning.md).
 COARSE = 20
 KEPT_CLEAR = ", kept clear"  # after the name of a start
-# Optima further above the best one than this are not worth a solve on a finer mesh.
-PROMISING = 1.1
 
 
 class _OnMesh(Protocol):
