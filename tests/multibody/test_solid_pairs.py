@@ -65,7 +65,7 @@ def test_neighbours_at_a_joint_are_exempt_within_a_body() -> None:
         assert f"{one} of human and {other} of human" in own
     robots = {pair.told for pair in PAIRS if pair.kind == "robot"}
     assert "link 1 joint of robot and link 2 tube of robot" not in robots
-    assert {"link 4 tube of robot and gripper of robot", "head screen of robot and gripper of robot"} <= robots
+    assert {"link 4 tube of robot and gripper of robot", "head of robot and gripper of robot"} <= robots
 
 
 @pytest.mark.parametrize("sex", ["male", "female"])
@@ -99,7 +99,7 @@ def test_the_free_arm_hangs_beside_the_body(sex: Sex, body_mass_index: float, co
 
 def test_a_robot_in_its_posture_is_clear_of_itself(coal_distance: ModuleType) -> None:
     robot = AGENTS[1]
-    assert min(coal_distance.own_distances(robot, PAIRS, robot.posture).values()) > 0.03
+    assert min(coal_distance.own_distances(robot, PAIRS, robot.posture).values()) > 0.01
 
 
 def test_the_grasp_frame_tells_what_grasps() -> None:
