@@ -8,14 +8,18 @@ tried.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from liftopt.search.candidate import Candidate
 from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.search.optima import PROMISING, each_once, is_known, objective_of
+from liftopt.search.passing_paths import passing_paths
 from liftopt.search.session import Session
 
 # Optima that are tried for each that is wanted, where many cannot be made clear.
 FAILING = 4
+# Of those that failed, so many are led past what they ran into, or taken to its other sides.
+PASSED = 2
 
 
 def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> list[Candidate]:
@@ -46,7 +50,7 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
             failed.append(attempt)
     if not found:
         session.blocked = failed
-        found = _other_sides(clearer, failed, wanted)
+        found = _passing(session, clearer, failed[:PASSED]) or _other_sides(clearer, failed[:PASSED])
     if not found:
         return []
     return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
@@ -74,10 +78,27 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
     return list(candidates)
 
 
-def _other_sides(clearer: Clearer, failed: Sequence[Attempt], wanted: int) -> list[Candidate]:
+def _passing(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima in which the object is led past what it ran into."""
+    found: list[Candidate] = []
+    kinematics = session.postures.kinematics
+    for first in failed:
+        origin = first.origin
+        for x in passing_paths(origin.problem, kinematics, clearer.solids, origin.result.x, clearer.deadline):
+            if clearer.deadline.passed:
+                break
+            start = replace(origin, result=replace(origin.result, x=x, converged=False))
+            attempt = clearer.make_clear(start, polish=False, also=first.deep)
+            found += [attempt.candidate] if attempt.clear else []
+        if found:
+            break
+    return found
+
+
+def _other_sides(clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
     """Return clear optima that pass on another side than the one that led nowhere."""
     found: list[Candidate] = []
-    for first in failed[:wanted]:
+    for first in failed:
         if clearer.deadline.passed:
             break
         for avoided in dict.fromkeys((first.deep, *(frozenset({pair}) for pair in sorted(first.deep)))):

@@ -127,21 +127,29 @@ class Clearer:
         """Whether all pairs are as far apart as the scenario asks, given the least distance of each (P,)."""
         return bool(least.min(initial=np.inf) >= self.clearance - CLEAR)
 
-    def make_clear(self, candidate: Candidate, polish: bool = True, avoided: frozenset[int] = frozenset()) -> Attempt:
+    def make_clear(
+        self,
+        candidate: Candidate,
+        polish: bool = True,
+        avoided: frozenset[int] = frozenset(),
+        also: frozenset[int] = frozenset(),
+    ) -> Attempt:
         """Return the clear optimum that a candidate leads to; itself if it is clear.
 
         Args:
-            candidate: an optimum, with planes or without.
+            candidate: an optimum, with planes or without, or a motion to start from, which did not converge.
             polish: new planes until the objective falls no more; else the first clear motion will do.
             avoided: pairs whose first choice of a side led nowhere.
+            also: pairs that get planes though they may be apart.
         """
-        now, clear, watched = candidate, None, pairs_in(self.solids, candidate.problem.planes)
+        now, clear = candidate, None
+        watched = np.union1d(pairs_in(self.solids, candidate.problem.planes), sorted(also)).astype(np.int64)
         deep: frozenset[int] = frozenset()
         for turn in range(ROUNDS + 1):
             knots, least = self.look(now.problem, now.spline, now.result.x)
             if turn == 0:
                 deep = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
-            if self.is_clear(least):
+            if self.is_clear(least) and now.result.converged:
                 before, clear = clear, now
                 objective = now.result.objective
                 if before and before.result.objective < objective:
@@ -153,8 +161,10 @@ class Clearer:
                 break
             watched = np.union1d(watched, np.flatnonzero(least < self.clearance + WATCHED))
             crossing = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
-            options = PlaneOptions(self.clearance + MARGIN, MARGIN, knot_times(now.problem), crossing, avoided)
-            now = self._solved(now, knots, watched, options)
+            times = knot_times(now.problem)
+            now = self._solved(
+                now, knots, watched, PlaneOptions(self.clearance + MARGIN, MARGIN, times, crossing, avoided)
+            )
             if not now.result.converged:
                 break
         return Attempt(candidate, clear or now, clear is not None, deep)
@@ -163,15 +173,11 @@ class Clearer:
         """Return what the solver makes of a candidate with new planes."""
         problem, before = now.problem, now.result
         other = problem.apart(choose_planes(self.solids, knots, pairs, options, problem.planes))
-        warm = transfer_multipliers(problem, before.multipliers, other)
-        same = problem.planes is not None and other.same_structure(problem)
-        result = self.solver(other).solve(
-            before.x,
-            deadline=self.deadline,
-            warm=replace(warm, interpolated=not same),
-            problem=other,
-            most=ITERATIONS,
-        )
+        warm = None
+        if before.converged:
+            same = problem.planes is not None and other.same_structure(problem)
+            warm = replace(transfer_multipliers(problem, before.multipliers, other), interpolated=not same)
+        result = self.solver(other).solve(before.x, deadline=self.deadline, warm=warm, problem=other, most=ITERATIONS)
         return replace(now, problem=other, result=total(before, result))
 
 

@@ -106,7 +106,8 @@ def choose_planes(
             if distance > 0.0:
                 between[at] += _rows(solids, found, p, at, normal, distance)
     known = {(s.one, s.other): s.rows for s in like.separations} if like else {}
-    bodies = sorted({*rows, *known})  # what is known and no longer near asks for nothing
+    # What is known and no longer near asks for nothing.
+    bodies = sorted({*known, *(key for key, at in rows.items() if any(at))})
     made = tuple(_separation(*key, rows[key], known.get(key, 0)) for key in bodies)
     used = {body.part for key in bodies for body in key}
     return SeparatingPlanes(tuple(part for part in solids.parts if part.part in used), made)
