@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
@@ -232,7 +233,8 @@ def test_once_it_is_kept_what_comes_too_near_is_no_solution(light: Any, monkeypa
     found = find_lift(Session(scenario.replace({"limits.clearance": "off"}), SolverCache())).best
     for limit in (0.0, 0.2):
         checked = verify.verify(found.problem, found.spline, found.result, 1e-6, (), limit).check("clearance")
-        between = [item.distance for item in clearance_of(between_knots(light.solution)).closest]
-        assert checked.value == pytest.approx(max(limit - min(between), 0.0), abs=1e-6)
-        assert checked.passed == (limit - min(between) <= 1e-3)
+        asked = replace(light.solution, scenario=scenario.replace({"limits.clearance": limit}))
+        short = max(item.pair.asked(limit) - item.distance for item in clearance_of(between_knots(asked)).closest)
+        assert checked.value == pytest.approx(max(short, 0.0), abs=1e-6)
+        assert checked.passed == (short <= 1e-3)
     assert "clearance" not in {check.name for check in found.verification.checks}
