@@ -20,6 +20,7 @@ from liftopt.solution.clearance_measure import NEAR
 from liftopt.solution.clearance_of import clearance_of
 from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
+from liftopt.solution.summary import summary_dict
 from liftopt.storage.reader import load_result
 
 SHELF = [{"name": "shelf", "box": [0.5, 0.6, 0.05], "position": [0.7, -0.1, 0.95], "yaw_deg": 20.0}]
@@ -200,6 +201,18 @@ def test_a_viewer_gets_points_by_time(clearance: Clearance) -> None:
     assert clearance.smallest is clearance.closest[0]
     floor = clearance.closest_of("object-floor")
     assert floor is not None and floor.points[1, 2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_summary_has_the_smallest_distance_of_each_kind(light: Any) -> None:
+    solution = light.solution
+    told = summary_dict(solution)["clearance"]
+    assert told["limit_m"] == solution.scenario.limits.clearance
+    assert set(told["kinds"]) == {kind.kind for kind in solution.clearance.kinds}
+    for kind in solution.clearance.kinds:
+        entry = told["kinds"][kind.kind]
+        assert entry["smallest_m"] == kind.distance.min()
+        k = int(np.argmin(np.abs(solution.clearance.time - entry["at_s"])))
+        assert solution.clearance.pairs[kind.pair[k]].told == entry["between"]
 
 
 def test_a_result_that_is_read_has_the_same_clearance(light: Any) -> None:
