@@ -59,6 +59,7 @@ def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[st
         "grasp_force": _grasp_force(fine),
         "grasp_moment": _grasp_moment(fine),
         **_ground_reactions(fine),
+        "clearance": _clearance(solution),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),
@@ -158,6 +159,22 @@ def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, A
         "moment_lateral": _peak(moment[:, 0], solution.time, "Nm"),
         "moment_sagittal": _peak(moment[:, 1], solution.time, "Nm"),
         "moment_vertical": _peak(moment[:, 2], solution.time, "Nm"),
+    }
+
+
+def _clearance(solution: Solution) -> dict[str, Any] | None:
+    """Return the smallest distance by kind of pair, whose it is and when; None of what is no solution."""
+    clearance = solution.clearance
+    if clearance is None:
+        return None
+    first = {kind.kind: clearance.closest_of(kind.kind) for kind in clearance.kinds}
+    return {
+        "limit_m": solution.scenario.limits.clearance,
+        "kinds": {
+            kind: {"smallest_m": _number(item.distance), "at_s": _number(item.time), "between": item.pair.told}
+            for kind, item in first.items()
+            if item is not None
+        },
     }
 
 
