@@ -20,7 +20,8 @@ def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: 
     q, _, a, force, moment, tau = ca.vertsplit(points, np.cumsum([0, *at.sizes]).tolist())
     total = task.acceleration_weight * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
     # A moment takes a pair of contact forces, the hand's breadth apart.
-    for i, twist in zip(at.turning, ca.vertsplit(moment, FORCE_SIZE), strict=True):
+    twists: Any = ca.vertsplit(moment, FORCE_SIZE)
+    for i, twist in zip(at.turning, twists, strict=True):
         total += task.force_weight / agents[i].grasp.breadth ** 2 * ca.sum1(twist**2)
     first = 0
     for agent, weight, n in zip(agents, task.agent_weights, at.joints, strict=True):
