@@ -34,6 +34,7 @@ from .scenario.task import GraspPlace as GraspPlace
 from .scenario.task import Lift as Lift
 from .scenario.task import ObjectPlace as ObjectPlace
 from .solution.checks import Verification as Verification
+from .solution.clearance import Clearance as Clearance
 from .solution.finding import Assessment as Assessment
 from .solution.finding import Finding as Finding
 from .studies.pareto import pareto_front as pareto_front

@@ -230,6 +230,7 @@ def solution() -> SimpleNamespace:
         accuracy=None,
         reasons=(),
         suggested_changes=(),
+        clearance=None,
         assessment=Assessment.of(
             [
                 Finding("verdict.mathematics", "info", "solved and verified", "Solved and verified."),

@@ -8,6 +8,7 @@ import io
 import json
 import os
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from liftopt.commands.terminal import telling
@@ -113,6 +114,7 @@ def _row(front: Front, point: Point) -> dict[str, Any]:
     from liftopt.collocation.motion import objective_terms
     from liftopt.multibody.trajectory import limit_share
     from liftopt.solution.checks import FINER
+    from liftopt.solution.effort import effort_in
 
     candidate, (one, other) = point.candidate, front.between
     duration = candidate.problem.task.duration
@@ -127,7 +129,7 @@ def _row(front: Front, point: Point) -> dict[str, Any]:
     return {
         f"{one}_weight": point.weights[0],
         f"{other}_weight": point.weights[1],
-        **{f"{name}_effort_N2m2s": efforts[name] for name in everybody},
+        **{f"{name}_effort_{effort_in(front.scenario).key}": efforts[name] for name in everybody},
         f"{one}_load_share": point.share,
         **{f"{name}_largest_share_of_limit": used[name] for name in everybody},
         "objective": float(candidate.result.objective),
@@ -138,9 +140,10 @@ def _row(front: Front, point: Point) -> dict[str, Any]:
 
 def table(front: Front, values: dict[str, Any]) -> str:
     """Return the table that the command prints, of a front and what ``front_dict`` returned of it."""
+    from liftopt.solution.effort import effort_in
     from liftopt.studies.pareto import ratio_text, who_of
 
-    one, other = front.between
+    effort, (one, other) = effort_in(front.scenario), front.between
     everybody = (one, other, *(name for name in front.scenario.agents if name not in front.between))
     labels = {name: who_of(front, name).label for name in everybody}
     ratio, first = f"weights {labels[one]} : {labels[other]}", who_of(front, one).called
@@ -148,18 +151,23 @@ def table(front: Front, values: dict[str, Any]) -> str:
     wide, narrow = ({name: max(least, len(labels[name])) for name in everybody} for least in (10, 7))
     used = sum(narrow.values()) + len(narrow) - 1
     lines = [
-        f"Effort is the integral of squared joint torques; load is {first}'s mean part of the object's weight, most",
-        "used the largest part of a joint's torque limit.",
+        *wrap(
+            f"Effort is the {effort.about}; load is {first}'s mean part of the object's weight, most used the largest "
+            "part of a joint's torque limit.",
+            112,
+        ),
         *_traded(front),
         "",
         f"{ratio:>{left}} " + " ".join(f"{labels[name]:>{wide[name]}}" for name in everybody)
         + f" {'load':>6} {'most used':>{used}}",
-        f"{'':>{left}} " + " ".join(f"{'[N2 m2 s]':>{wide[name]}}" for name in everybody)
+        f"{'':>{left}} " + " ".join(f"{f'[{effort.unit}]':>{wide[name]}}" for name in everybody)
         + f" {'[%]':>6} " + " ".join(f"{labels[name]:>{narrow[name]}}" for name in everybody),
     ]  # fmt: skip
     for row in values["points"]:
         weights = ratio_text((row[f"{one}_weight"], row[f"{other}_weight"]))
-        efforts = " ".join(f"{row[f'{name}_effort_N2m2s']:{wide[name]}.1f}" for name in everybody)
+        efforts = " ".join(
+            f"{row[f'{name}_effort_{effort.key}']:{wide[name]}.{effort.decimals}f}" for name in everybody
+        )
         most = [f"{100 * row[f'{name}_largest_share_of_limit']:.0f}%" for name in everybody]
         lines.append(
             f"{weights:>{left}} {efforts} {100 * row[f'{one}_load_share']:6.1f} "

@@ -103,9 +103,10 @@ def _write_plot(study: SensitivityStudy, path: Path) -> None:
 def table(study: SensitivityStudy) -> str:
     """Return the table that the command prints."""
     from liftopt.assessment.who import who_is
+    from liftopt.solution.effort import effort_in
     from liftopt.studies.sensitivity import bearers
 
-    agents = study.candidate.problem.team.agents
+    agents, effort = study.candidate.problem.team.agents, effort_in(study.candidate.scenario)
     told = {agent.name: who_is(agent, agents) for agent in agents}
     now, bearing = study.figures, bearers(study)
     efforts = ", ".join(f"of {who.called} {now[f'effort {name}']:.4g}" for name, who in told.items())
@@ -113,7 +114,7 @@ def table(study: SensitivityStudy) -> str:
     others = [f"{told[name].called} {share}" for name, share in zip(bearing[1:], borne[1:], strict=True)]
     limits = [f"{name} with {100 * now[f'used {name}']:.1f} % of its torque" for name in study.busiest]
     lines = [
-        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} N2 m2 s; "
+        f"{study.candidate.scenario.name}: J = {now['objective']:.5g}, effort {efforts} {effort.unit}; "
         f"{told[bearing[0]].called} bears",
         f"{', '.join([borne[0], *others])}. Nearest to their limits: {' and '.join(limits)}.",
         "",

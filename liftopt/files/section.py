@@ -14,8 +14,9 @@ from liftopt.files.entries import allowed_in, extra_of, kinds_of, meant_by
 from liftopt.files.suggestions import did_you_mean, nearest
 
 if TYPE_CHECKING:
+    from typing import Self
+
     from pydantic._internal._model_construction import ModelMetaclass
-    from typing_extensions import Self
 else:
     ModelMetaclass = type(BaseModel)
 

@@ -11,7 +11,7 @@ from typing import Any, overload
 SEVERITIES = ("error", "warning", "caution", "info")
 ERROR, WARNING, CAUTION, INFO = SEVERITIES
 MATHEMATICS, PERSON, ROBOT, CLEARANCE = "mathematics", "person", "robot", "clearance"
-SUBJECTS = (PERSON, ROBOT, MATHEMATICS)
+SUBJECTS = (PERSON, ROBOT, CLEARANCE, MATHEMATICS)
 VERDICT = "verdict"
 
 

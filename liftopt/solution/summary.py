@@ -17,6 +17,7 @@ import numpy as np
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.trajectory import GRAVITY, limit_share
 from liftopt.scenario.agents import Person
+from liftopt.solution.effort import effort_in
 from liftopt.solution.grasp_loads import shares, squeeze
 from liftopt.solution.interpolation import between_knots
 from liftopt.types import Array
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from liftopt.solution.solution import Solution
 
 
-AGENT_UNITS = {"paper": "N^2 m^2 s", "natural": "s"}  # of an agent's part of the objective, by preset
 TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s", "range": "s", "tilt": "s"}
 
 
@@ -59,6 +59,7 @@ def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[st
         "grasp_force": _grasp_force(fine),
         "grasp_moment": _grasp_moment(fine),
         **_ground_reactions(fine),
+        "clearance": _clearance(solution),
         "objective": _objective(solution),
         "solver": {
             "intervals": int(solution.intervals),
@@ -161,9 +162,25 @@ def _ground_reaction(solution: Solution, person: AgentTrajectory) -> dict[str, A
     }
 
 
+def _clearance(solution: Solution) -> dict[str, Any] | None:
+    """Return the smallest distance by kind of pair, whose it is and when; None of what is no solution."""
+    clearance = solution.clearance
+    if clearance is None:
+        return None
+    first = {kind.kind: clearance.closest_of(kind.kind) for kind in clearance.kinds}
+    return {
+        "limit_m": solution.scenario.limits.clearance,
+        "kinds": {
+            kind: {"smallest_m": _number(item.distance), "at_s": _number(item.time), "between": item.pair.told}
+            for kind, item in first.items()
+            if item is not None
+        },
+    }
+
+
 def _objective(solution: Solution) -> dict[str, Any]:
-    of_agents = AGENT_UNITS[solution.scenario.objective.preset]
-    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), of_agents) | TERM_UNITS
+    effort = effort_in(solution.scenario).unit.replace("2", "^2")
+    terms, units = {}, dict.fromkeys((agent.name for agent in solution.agents), effort) | TERM_UNITS
     for name, integral in solution.objective_terms.items():
         weight = solution.objective_weights[name]
         terms[name] = {

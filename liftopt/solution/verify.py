@@ -142,15 +142,16 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
 
 
 def _clearance(problem: Problem, motion: Motion, obstacles: Sequence[Solid], clearance: float) -> Check:
-    """How much nearer than asked two bodies come, by coal."""
+    """How much nearer than asked two solids come, by coal."""
     team = problem.team
     agents, lifted = list(zip(team.agents, motion.agents, strict=True)), (team.object, motion.object)
     pairs = solid_pairs(team.agents, team.object, obstacles)
     near = pairs_nearby(motion.time, agents, lifted, pairs, clearance)
-    worst = min(near, key=lambda item: item.distance, default=None)
-    if worst is None or worst.distance >= clearance:
+    short = [item.pair.asked(clearance) - item.distance for item in near]
+    if max(short, default=0.0) <= 0.0:
         return Check("clearance", 0.0, TOUCH, "m", "")
-    return Check("clearance", clearance - worst.distance, TOUCH, "m", f"{worst.pair.told} at {worst.time:.2f} s")
+    worst = near[int(np.argmax(short))]
+    return Check("clearance", max(short), TOUCH, "m", f"{worst.pair.told} at {worst.time:.2f} s")
 
 
 def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Check]:

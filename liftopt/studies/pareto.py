@@ -39,8 +39,8 @@ class Point:
     """One compromise.
 
     Attributes:
-        weights: of the first's and the second's squared torques.
-        efforts: the first's and the second's integral of squared torques [N^2 m^2 s].
+        weights: of the first's and the second's effort.
+        efforts: the first's and the second's effort, measured as ``effort_in`` their scenario.
         share: mean part of the vertical grasp force that the first carries.
         candidate: the lift, verified.
     """

@@ -6,6 +6,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, ScalarFormatter
 
+from liftopt.solution.effort import effort_in
 from liftopt.studies.pareto import Front, Point, ratio_text, who_of
 from liftopt.viz.plots_labels import label_points
 from liftopt.viz.plots_style import BLUE, FAINT, INK, ORANGE, WIDTH
@@ -34,8 +35,10 @@ def pareto_figure(front: Front) -> Figure:
             *point.efforts, color=ORANGE, linestyle="none", marker="o", markersize=8, zorder=4,
             label="weights of the scenario",
         )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel=f"effort of {one.called}, ∫ Σ τ² dt [N² m² s]")
-    axes.set_ylabel(f"effort of {other.called}, ∫ Σ τ² dt [N² m² s]")
+    effort = effort_in(front.scenario)
+    measure = f"{effort.formula} [{effort.signs}]"
+    axes.set(xscale="log", yscale="log", xlabel=f"effort of {one.called}, {measure}")
+    axes.set_ylabel(f"effort of {other.called}, {measure}")
     axes.set_title(
         f"{front.scenario.name}: who works more. At the points: weights {one.label} : {other.label}, load {one.called} "
         "bears"

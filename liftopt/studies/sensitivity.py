@@ -76,9 +76,10 @@ class SensitivityStudy:
 
     Attributes:
         candidate: the lift.
-        figures: their values: ``"objective"``, ``"effort <agent>"`` [N^2 m^2 s], ``"share <agent>"``, the mean part of
-            the vertical grasp force, ``"peak <joint>"`` [Nm], the size of a joint's largest torque, and
-            ``"used <joint>"``, its largest share of the limit in its direction; both between knots too.
+        figures: their values: ``"objective"``, ``"effort <agent>"`` (``effort_in`` its scenario),
+            ``"share <agent>"``, the mean part of the vertical grasp force, ``"peak <joint>"`` [Nm], the size of a
+            joint's largest torque, and ``"used <joint>"``, its largest share of the limit in its direction; both
+            between knots too.
         busiest: joint of each agent that uses most of its limit.
         sensitivities: one a parameter.
         left_out: parameter and why, of those that the scenario does not let change.

@@ -22,7 +22,7 @@ from liftopt.viz.viewer_views import View, views_of
 from liftopt.viz.who import colour_of
 
 FORMATS = (".png", ".jpg", ".jpeg")
-PANEL = (620, 560)  # width and height of the picture of one moment [pixels]
+PANEL = (640, 500)  # width and height of the picture of one moment [pixels]
 PATH_POINTS = 60
 MARGIN = 0.06  # [m] around what is in view
 

@@ -21,6 +21,7 @@ from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_effort import posture_score, strength_used
 from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motion
 from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, robot_angles, robot_torques
+from liftopt.viz.plots_recorded import recorded_angles
 from liftopt.viz.plots_snapshots import snapshots
 from liftopt.viz.plots_style import STYLE, head
 
@@ -67,7 +68,7 @@ class AgentPlot:
 PLOTS: tuple[Plot | AgentPlot, ...] = (
     Plot(
         "snapshots",
-        "The lift at five moments, in the shapes of the models that were solved. Fig. 11 of the paper.",
+        "The lift at five moments, as the playback shows it. Fig. 11 of the paper.",
         snapshots,
     ),
     AgentPlot(
@@ -84,6 +85,16 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
         "angles",
         "All joint angles of {who} within their ranges of motion. Zero is upright, the arm hanging, palm forward.",
         human_angles,
+    ),
+    AgentPlot(
+        "person",
+        "recorded_angles",
+        "recorded",
+        "Angles of {who} by the height of the wrist, over a band around how one person lifted a box with two hands: "
+        "mean and standard deviation of five lifts (AnyBody's repository), at least 5 deg to each side; a trend, no "
+        "norm. The elbow's angle is that between upper arm and forearm, the upper arm's that from the trunk's downward "
+        "axis.",
+        recorded_angles,
     ),
     AgentPlot(
         "person",

@@ -24,7 +24,7 @@ from liftopt.viz.viewer_views import views_of
 from liftopt.viz.who import lead_of, stand_opposite
 
 MOMENTS = (0.0, 0.25, 0.5, 0.75, 1.0)
-PANEL = (540, 420)  # width and height of each [pixels]
+PANEL = (480, 380)  # width and height of each [pixels]
 # From where, as the lead sees it: two who face each other from the lead's right; others so that none hides another.
 SIDE, OBLIQUE, ROOM = (0.0, -1.0, 0.1), (0.5, -1.0, 0.55), 0.02
 KEY_LENGTH, LONGEST = 0.2, 0.6  # of the arrow that the key shows, and of any [m]

@@ -43,14 +43,15 @@ def rasterize(corners: Array, size: tuple[int, int], *, both_sides: bool = False
     triangle, weights = np.full(width * height, NOTHING, dtype=np.int64), np.zeros((width * height, 3))
     a, b, c = (corners[:, i, :2] for i in range(3))
     area = _cross(b - a, c - a)  # negative of what turns counter-clockwise, as y is down
-    low = np.maximum(np.ceil(corners[..., :2].min(axis=1) - 0.5), 0.0).astype(np.int64)
-    high = np.minimum(np.floor(corners[..., :2].max(axis=1) - 0.5), np.array(size) - 1.0).astype(np.int64)
+    low = np.maximum(np.ceil(np.minimum(np.minimum(a, b), c) - 0.5), 0.0).astype(np.int64)
+    high = np.minimum(np.floor(np.maximum(np.maximum(a, b), c) - 0.5), np.array(size) - 1.0).astype(np.int64)
     extent = np.maximum(high - low + 1, 0)
-    drawn = np.flatnonzero(((np.abs(area) if both_sides else -area) > 1e-12) & (extent.prod(axis=1) > 0))
+    pixels = extent[:, 0] * extent[:, 1]
+    drawn = np.flatnonzero(((np.abs(area) if both_sides else -area) > 1e-12) & (pixels > 0))
     # Shares of b and c, and the depth, are linear on the screen: constant, by x and by y.
     share_b, share_c = (_plane(p - a, q - a, a) for p, q in ((c, b), (b, c)))
-    for part in _batches(drawn, extent.prod(axis=1)):
-        count = extent[part].prod(axis=1)
+    for part in _batches(drawn, pixels):
+        count = pixels[part]
         owner = np.repeat(part, count)
         within = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
         wide = np.repeat(extent[part, 0], count)

@@ -16,6 +16,7 @@ from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
+from liftopt.viz.scene_clearance import line_commands, line_values, nearest_at
 from liftopt.viz.scene_commands import Command, clip, place, set_object
 from liftopt.viz.scene_gripper import gripper_parts
 from liftopt.viz.scene_hand import RIGHT
@@ -92,6 +93,8 @@ def lift_commands(cast: Cast, first: Cast | None = None) -> list[Command]:
         along = path_mesh(force.point)
         if along is not None:
             commands.append(set_object(f"{cast.root}/path/{name}", along, colour, opacity))
+    if nearest_at(cast.solution.clearance, cast.playback.time) is not None:
+        commands += line_commands(f"{cast.root}/nearest", opacity)
     return commands
 
 
@@ -103,6 +106,10 @@ def lift_tracks(cast: Cast, metres_per_newton: float) -> list[Command]:
         clips.append(clip(body_path(cast, body), time, values))
     for name, force in cast.playback.forces.items():
         for path, values in arrow_values(f"{cast.root}/force/{name}", force, metres_per_newton).items():
+            clips.append(clip(path, time, values))
+    nearest = nearest_at(cast.solution.clearance, time)
+    if nearest is not None:
+        for path, values in line_values(f"{cast.root}/nearest", nearest["points"]).items():
             clips.append(clip(path, time, values))
     return clips
 

@@ -62,13 +62,13 @@ def arrow_values(root: str, track: ForceTrack, metres_per_newton: float) -> dict
     up = np.zeros_like(track.force)
     up[:, 2] = length - head
     return {
-        root: {"position": track.point, "quaternion": _from_z(track.force)},
+        root: {"position": track.point, "quaternion": from_z(track.force)},
         f"{root}/shaft": {"scale": shaft},
         f"{root}/head": {"position": up, "scale": np.repeat(shrunk[:, None], 3, axis=1)},
     }
 
 
-def _from_z(vectors: Array) -> Array:
+def from_z(vectors: Array) -> Array:
     """Return quaternions (K, 4) x y z w that turn z to ``vectors`` (K, 3); a vanishing one keeps the turn before it."""
     turns = np.zeros((len(vectors), 4))
     last = np.array([0.0, 0.0, 0.0, 1.0])

@@ -19,7 +19,7 @@ SILVER: Colour = (0.62, 0.63, 0.65)
 PALM = 0.45  # of the way from flange to grasp point: so long is the body
 BESIDE = 0.030  # of a finger's hinge from the axis [m]
 BEYOND = 0.022  # that a finger reaches past the grasp point [m]
-THICK, BROAD = 0.0075, 0.013  # half axes of a finger's section [m]
+THICK, BROAD = 0.0085, 0.016  # half axes of a finger's section [m]
 
 
 def gripper_digits(length: float) -> tuple[Digit, ...]:

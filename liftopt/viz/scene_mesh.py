@@ -106,17 +106,21 @@ def block(centre: Sequence[float], size: Sequence[float], *, edge: float = 0.01)
     # Corner c has three vertices, one in the plane of each of its faces.
     signs = np.array(list(product((-1.0, 1.0), repeat=3)))
     vertices = np.repeat(signs * (half - edge), 3, axis=0) + np.tile(edge * np.eye(3), (8, 1)) * np.repeat(signs, 3, 0)
-    triangles = []
+    triangles = [[3 * c, 3 * c + 1, 3 * c + 2] for c in range(8)]
     for axis, sign in product(range(3), (-1.0, 1.0)):
-        face = [3 * c + axis for c in np.flatnonzero(signs[:, axis] == sign).tolist()]
-        triangles += _quad(vertices, [face[0], face[1], face[3], face[2]])
+        a, b, c, d = (3 * corner + axis for corner in np.flatnonzero(signs[:, axis] == sign).tolist())
+        triangles += [[a, b, d], [a, d, c]]
     for c, d in combinations(range(8), 2):
         differ = np.flatnonzero(signs[c] != signs[d])
         if len(differ) == 1:  # the two ends of an edge: cut between its two faces
             one, other = (axis for axis in range(3) if axis not in differ)
-            triangles += _quad(vertices, [3 * c + one, 3 * d + one, 3 * d + other, 3 * c + other])
-    triangles += [_outward(vertices, [3 * c, 3 * c + 1, 3 * c + 2]) for c in range(8)]
-    return Mesh(vertices + np.asarray(centre, float), np.array(triangles, dtype=np.int64))
+            triangles += [[3 * c + one, 3 * d + one, 3 * d + other], [3 * c + one, 3 * d + other, 3 * c + other]]
+    found = np.array(triangles, dtype=np.int64)
+    first, second, third = (vertices[found[:, i]] for i in range(3))
+    normal = np.cross(second - first, third - first)
+    inwards = np.einsum("ti,ti->t", normal, first + second + third) < 0.0
+    found[inwards] = found[inwards, ::-1]
+    return Mesh(vertices + np.asarray(centre, float), found)
 
 
 def merged(meshes: Sequence[Mesh]) -> Mesh:
@@ -124,18 +128,6 @@ def merged(meshes: Sequence[Mesh]) -> Mesh:
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]
     return Mesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(triangles))
-
-
-def _quad(vertices: Array, corners: list[int]) -> list[list[int]]:
-    """Return two triangles of a face of a body about the origin, seen from outside."""
-    a, b, c, d = corners
-    return [_outward(vertices, [a, b, c]), _outward(vertices, [a, c, d])]
-
-
-def _outward(vertices: Array, corners: list[int]) -> list[int]:
-    """Return a triangle of a body about the origin so that it turns counter-clockwise seen from outside."""
-    a, b, c = vertices[corners]
-    return corners if float(np.cross(b - a, c - a) @ (a + b + c)) > 0.0 else corners[::-1]
 
 
 def _loop(ring: Ring, axis: Array, across: Array, sides: int) -> Array:

@@ -157,13 +157,13 @@ def _arm(subject: Subject, side: float) -> tuple[Mesh, Mesh, Mesh]:
         return Ring((ahead, y, height), radius, radius)
 
     half = 0.5 * (shoulder + elbow)
-    sleeve = [ring(shoulder + 0.012, 1.12 * biceps), ring(shoulder - 0.05, 1.2 * biceps)]
+    sleeve = [ring(shoulder + 0.004, 1.02 * biceps), ring(shoulder - 0.06, 1.10 * biceps)]
     sleeve += [ring(half, 1.1 * biceps), ring(half - 0.02, 1.1 * biceps)]
     upper = [ring(half + 0.03, 0.96 * biceps), ring(half - 0.03, 0.98 * biceps), ring(elbow, 0.86 * forearm)]
     lower = [ring(elbow, 0.88 * forearm), ring(elbow - 0.25 * lengths.l5, forearm)]
     lower += [ring(elbow - 0.6 * lengths.l5, 0.8 * forearm), ring(wrist + 0.02, 1.08 * thin), ring(wrist, 1.02 * thin)]
     return (
-        tube(sleeve, TO_SIDE, round_start=1.0 * biceps),
+        tube(sleeve, TO_SIDE, round_start=0.92 * biceps),
         tube(upper, TO_SIDE, round_end=0.8 * forearm),
         tube(lower, TO_SIDE, round_start=0.8 * forearm, round_end=0.015),
     )

@@ -22,6 +22,7 @@ from liftopt.viz.meshcat_files import LICENCES, VIEWER, meshcat_text
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_arrow import metres_per_newton
+from liftopt.viz.scene_clearance import LINE, nearest_at
 from liftopt.viz.scene_part import Colour
 from liftopt.viz.scene_stage import stage_commands
 from liftopt.viz.viewer_views import agents_in, head_of, views_of
@@ -63,6 +64,7 @@ def playback_page(
         "views": [view.plain() for view in views_of(casts)],
         "agents": _agents(casts),
         "object": solution.object.name,
+        "nearest_colour": _hex(LINE),
         "labels": _labels(casts),
     }
     return _fill(data, _title(solution, other))
@@ -97,7 +99,21 @@ def _facts(cast: Cast, name: str) -> dict[str, Any]:
         "colour": _hex(cast.colour),
         "time": np.round(playback.time, 5).tolist(),
         "force": sizes,
+        "nearest": _nearest(cast),
         "height": np.round(playback.bodies[solution.object.name].position[:, 2], 4).tolist(),
+    }
+
+
+def _nearest(cast: Cast) -> dict[str, Any] | None:
+    """Return how far the nearest two bodies are apart and which two, frame by frame; None if that is unknown."""
+    found = nearest_at(cast.solution.clearance, cast.playback.time)
+    if found is None:
+        return None
+    pairs = list(dict.fromkeys(found["pairs"]))
+    return {
+        "distance": np.round(found["distance"], 4).tolist(),
+        "pair": [pairs.index(pair) for pair in found["pairs"]],
+        "pairs": pairs,
     }
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from liftopt.collocation.motion import motion_at, objective_terms
 from liftopt.collocation.parametric import Optimum
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
@@ -69,6 +70,19 @@ def test_optimum_moves_as_it_does_when_solved_again(solved: Solved, name: str) -
     pulled = (high.multipliers.g - low.multipliers.g) / (2 * simd)
     assert np.abs(tangent.multipliers.g - pulled).max() < 1e-2 * np.abs(pulled).max()
     assert tangent.objective == pytest.approx((high.objective - low.objective) / (2 * simd), rel=1e-4)
+
+
+def test_the_objective_rises_by_the_terms_whose_weights_rise() -> None:
+    """Envelope theorem: dJ by the weight of a term is its unweighted integral, here by Pinocchio."""
+    scenario = load_scenario("table5_near", {"objective.preset": "natural", "solver.starts": 1, "solver.intervals": 12})
+    candidate = find_lift(Session(scenario, SolverCache())).best
+    problem, result, step = candidate.problem, candidate.result, 1e-3
+    optimum = Optimum(problem, result.x, result.multipliers)
+    spline = candidate.spline
+    terms = objective_terms(problem, motion_at(problem, spline, result.x, spline.phase))
+    for name in ("range", "tilt", "acceleration", "force"):
+        sides = (_at(problem, **{f"{name}_weight": change}) for change in (-step, step))
+        assert optimum.tangent(*sides, step).objective == pytest.approx(terms[name], rel=1e-6)
 
 
 def test_limit_that_comes_first_is_where_it_says(solved: Solved) -> None:

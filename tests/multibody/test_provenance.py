@@ -20,6 +20,15 @@ def test_states_the_limits_that_the_agent_has():
     np.testing.assert_array_equal([item.value for item in stated if item.group == "speed"], limits.velocity)
 
 
+def test_states_where_the_agent_is_at_ease():
+    comfort, stated = human_agent(SUBJECT).comfort, subject_quantities(SUBJECT)
+    neutral, first, last, weight = np.reshape([item.value for item in stated if item.group == "ease"], (10, 4)).T
+    np.testing.assert_allclose(np.radians(neutral), comfort.neutral, atol=1e-15)
+    np.testing.assert_allclose(np.radians(neutral - first), comfort.room_lower)
+    np.testing.assert_allclose(np.radians(last - neutral), comfort.room_upper)
+    np.testing.assert_array_equal(weight, comfort.weight)
+
+
 def test_states_masses_that_sum_to_the_body_and_a_source_for_everything():
     stated = subject_quantities(SUBJECT)
     assert sum(item.value for item in stated if item.name.endswith("mass")) == pytest.approx(68.0, abs=1e-9)

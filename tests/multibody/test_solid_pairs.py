@@ -65,7 +65,7 @@ def test_neighbours_at_a_joint_are_exempt_within_a_body() -> None:
         assert f"{one} of human and {other} of human" in own
     robots = {pair.told for pair in PAIRS if pair.kind == "robot"}
     assert "link 1 joint of robot and link 2 tube of robot" not in robots
-    assert {"link 4 tube of robot and gripper of robot", "head screen of robot and gripper of robot"} <= robots
+    assert {"link 4 tube of robot and gripper of robot", "head of robot and gripper of robot"} <= robots
 
 
 @pytest.mark.parametrize("sex", ["male", "female"])
@@ -81,9 +81,32 @@ def test_an_arm_that_hangs_is_in_nothing(
         assert min(nearest.values()) > 0.0, min(nearest, key=lambda pair: nearest[pair])
 
 
+def test_parts_of_one_body_may_touch() -> None:
+    """Whatever other bodies must keep: some links of a robot are as near to each other in every posture."""
+    for pair in PAIRS:
+        assert pair.asked(0.1) == (0.0 if pair.kind in ("person", "robot") else 0.1)
+        assert pair.within_body == (pair.kind in ("person", "robot"))
+
+
+@pytest.mark.parametrize("sex", ["male", "female"])
+@pytest.mark.parametrize("body_mass_index", [17.0, 24.5, 35.0])
+def test_the_free_arm_hangs_beside_the_body(sex: Sex, body_mass_index: float, coal_distance: ModuleType) -> None:
+    """Upright, neither through the trunk nor behind it; its own shoulder is where it begins."""
+    agent = human_agent(Subject(1.75, body_mass_index * 1.75**2, sex))
+    at, solids = coal_distance.joint_placements(agent, np.zeros(10)), {one.name: one for one in solids_of(agent)}
+    arm = [solids.pop(f"left {part}") for part in ("upper arm", "forearm", "hand")]
+    legs_and_trunk = [solid for name, solid in solids.items() if not name.startswith("right ") or solid.joint in (0, 3)]
+    for part in arm:
+        for other in legs_and_trunk:
+            apart = coal_distance.distance(part, at[part.joint], other, at[other.joint])
+            assert apart > 0.0, (part.name, other.name)
+        centre = at[part.joint] @ part.T_joint_solid
+        assert abs(centre[0, 3]) < 1e-6 and centre[1, 3] > 0.15
+
+
 def test_a_robot_in_its_posture_is_clear_of_itself(coal_distance: ModuleType) -> None:
     robot = AGENTS[1]
-    assert min(coal_distance.own_distances(robot, PAIRS, robot.posture).values()) > 0.03
+    assert min(coal_distance.own_distances(robot, PAIRS, robot.posture).values()) > 0.01
 
 
 def test_the_grasp_frame_tells_what_grasps() -> None:

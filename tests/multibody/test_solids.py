@@ -113,7 +113,7 @@ def test_an_obstacle_is_placed_by_its_centre() -> None:
 
 def test_a_mesh_is_refused() -> None:
     robot = AGENTS["robot"]
-    urdf = robot.urdf.replace('<box size="0.6 0.6 0.04"/>', '<mesh filename="foot.stl"/>')
+    urdf = robot.urdf.replace('<box size="0.78 0.69 0.24"/>', '<mesh filename="foot.stl"/>')
     assert urdf != robot.urdf
     with pytest.raises(ModelError, match="pedestal foot must be a box"):
         solids_of(replace(robot, urdf=urdf))

@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from liftopt.scenario.build import agents_of
 from liftopt.solution.solution import Solution
+from liftopt.solution.summary import summary_dict
+from liftopt.storage.reader import load_result
 
 NATURAL = ("table5", "objective.preset=natural", "solver.intervals=12")
 
@@ -27,6 +30,20 @@ def test_it_is_solved_and_verified(natural: Solution) -> None:
     assert set(natural.objective_terms) == {"human", "robot", "acceleration", "force", "range", "tilt"}
     weighted = {name: natural.objective_weights[name] * value for name, value in natural.objective_terms.items()}
     assert natural.objective == pytest.approx(sum(weighted.values()), rel=1e-12)
+
+
+def test_it_is_read_back_with_its_terms(natural: Solution, solved: Callable[..., Any]) -> None:
+    """The attributes of solution.nc by xarray, and the result as it was."""
+    folder = solved(*NATURAL).folder
+    with xr.open_dataset(folder / "solution.nc") as data:
+        assert data.attrs["preset"] == "natural"
+        for name, value in natural.objective_terms.items():
+            assert data.attrs[f"objective_{name}"] == value
+    again = load_result(folder)
+    assert again.objective_terms == natural.objective_terms
+    assert again.objective_weights == natural.objective_weights
+    terms = summary_dict(again)["objective"]["terms"]
+    assert [terms[name]["unit"] for name in ("human", "robot", "range", "tilt")] == ["s"] * 4
 
 
 def test_ipopt_finds_no_better_one(natural: Solution, solved: Callable[..., Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
@@ -20,6 +21,7 @@ from liftopt.solution.clearance_measure import NEAR
 from liftopt.solution.clearance_of import clearance_of
 from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
+from liftopt.solution.summary import summary_dict
 from liftopt.storage.reader import load_result
 
 SHELF = [{"name": "shelf", "box": [0.5, 0.6, 0.05], "position": [0.7, -0.1, 0.95], "yaw_deg": 20.0}]
@@ -202,6 +204,18 @@ def test_a_viewer_gets_points_by_time(clearance: Clearance) -> None:
     assert floor is not None and floor.points[1, 2] == pytest.approx(0.0, abs=1e-9)
 
 
+def test_the_summary_has_the_smallest_distance_of_each_kind(light: Any) -> None:
+    solution = light.solution
+    told = summary_dict(solution)["clearance"]
+    assert told["limit_m"] == solution.scenario.limits.clearance
+    assert set(told["kinds"]) == {kind.kind for kind in solution.clearance.kinds}
+    for kind in solution.clearance.kinds:
+        entry = told["kinds"][kind.kind]
+        assert entry["smallest_m"] == kind.distance.min()
+        k = int(np.argmin(np.abs(solution.clearance.time - entry["at_s"])))
+        assert solution.clearance.pairs[kind.pair[k]].told == entry["between"]
+
+
 def test_a_result_that_is_read_has_the_same_clearance(light: Any) -> None:
     again, solution = load_result(light.folder).clearance, light.solution.clearance
     assert again is not None and solution is not None
@@ -219,7 +233,8 @@ def test_once_it_is_kept_what_comes_too_near_is_no_solution(light: Any, monkeypa
     found = find_lift(Session(scenario.replace({"limits.clearance": "off"}), SolverCache())).best
     for limit in (0.0, 0.2):
         checked = verify.verify(found.problem, found.spline, found.result, 1e-6, (), limit).check("clearance")
-        between = [item.distance for item in clearance_of(between_knots(light.solution)).closest]
-        assert checked.value == pytest.approx(max(limit - min(between), 0.0), abs=1e-6)
-        assert checked.passed == (limit - min(between) <= 1e-3)
+        asked = replace(light.solution, scenario=scenario.replace({"limits.clearance": limit}))
+        short = max(item.pair.asked(limit) - item.distance for item in clearance_of(between_knots(asked)).closest)
+        assert checked.value == pytest.approx(max(short, 0.0), abs=1e-6)
+        assert checked.passed == (short <= 1e-3)
     assert "clearance" not in {check.name for check in found.verification.checks}

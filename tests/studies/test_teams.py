@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -68,6 +69,20 @@ def test_a_front_of_three_tells_whom_it_trades_and_what_everybody_does(team_solu
         axes = pareto_figure(front).axes[0]
     assert "effort of far" in axes.get_ylabel()
     assert "effort of the person" in axes.get_xlabel()
+
+
+def test_a_natural_front_tells_shares_of_strength(team_solution: Teams) -> None:
+    """By the trapezoid rule over the knots, in seconds."""
+    team = team_solution("two_robots")
+    natural = team.solution.scenario.replace({"objective.preset": "natural"})
+    team = team._replace(solution=replace(team.solution, scenario=natural))
+    values = pareto_command.front_dict(_front(team, "human", "far"))
+    near = next(agent for agent in team.solution.agents if agent.name == "near")
+    effort = np.trapezoid((limit_share(near) ** 2).sum(axis=1), team.solution.time)
+    assert values["points"][0]["near_effort_s"] == pytest.approx(effort, rel=1e-12)
+    text = pareto_command.table(_front(team, "human", "far"), values)
+    assert "squared joint torques as shares of strength" in " ".join(text.split())
+    assert "[s]" in text and "N2" not in text
 
 
 def test_a_front_of_two_people_names_both(team_solution: Teams) -> None:

@@ -8,12 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from matplotlib.image import imread
 
 import liftopt as lo
 from liftopt.errors import InputError
+from liftopt.multibody.solids import solids_of
+from liftopt.scenario.build import agents_of
 from liftopt.viz.camera import in_perspective
+from liftopt.viz.digits import distance_to_box
 from liftopt.viz.picture import MARGIN, PANEL, bodies_at, picture_of
 from liftopt.viz.playback import playback_at
 from liftopt.viz.scene import CONCRETE, SEE_THROUGH, Cast, parts_of
@@ -102,3 +106,34 @@ def test_a_picture_is_written_and_wrong_words_are_refused(solution: Any, tmp_pat
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be written"):
         lift.picture(tmp_path / "file" / "lift.png", time=0.0)
+
+
+@pytest.mark.parametrize("k", [0, -1])
+def test_what_is_drawn_of_a_person_is_where_the_models_shapes_are(solution: Any, k: int) -> None:
+    """Pinocchio places the model's collision shapes: no part of the figure is far off them, and none is bare."""
+    cast = Cast(solution, playback_at(solution, solution.time[[0, -1]]), "/lift")
+    parts = parts_of(cast)
+    (agent,) = (one for one in agents_of(solution.scenario, solution.urdfs) if one.kind == "person")
+    model = agent.reduced()
+    data = model.createData()
+    # The first three of Table 2 are locked at zero.
+    pin.forwardKinematics(model, data, solution["human"].q[k, 3:])
+    solids = solids_of(agent)
+    own = [part for part in parts if part.body.startswith("human")]
+    figure = [body.mesh.vertices for body in bodies_at(cast, own, k)]
+    off = [np.min([_off(solid, data, vertices) for solid in solids], axis=0) for vertices in figure]
+    for part, far in zip(own, off, strict=True):
+        assert far.max() < 0.075, (part.body, part.name, far.max())
+    every = np.vstack(figure)
+    for solid in solids:
+        assert _off(solid, data, every).min() < 0.01, solid.name
+
+
+def _off(solid: Any, data: Any, points: np.ndarray) -> np.ndarray:
+    """Return how far points (n, 3) are from a solid, negative inside [m]."""
+    placement = data.oMi[solid.joint].homogeneous @ solid.T_joint_solid
+    own = (points - placement[:3, 3]) @ placement[:3, :3]
+    if solid.kind == "box":
+        return distance_to_box(own, np.array(solid.size) / 2)
+    along = np.clip(own[:, 2], -solid.size[1] / 2, solid.size[1] / 2)
+    return np.asarray(np.hypot(np.hypot(own[:, 0], own[:, 1]), own[:, 2] - along) - solid.size[0])

@@ -78,6 +78,18 @@ def test_a_force_arrow_starts_at_the_hand_and_points_along_the_force(opened: Any
         assert length == pytest.approx(np.linalg.norm(force) * opened.run("liftopt.data.metres_per_newton"), abs=1e-4)
 
 
+def test_the_nearest_two_bodies_are_told_and_a_line_is_between_them(opened: Any, lift: Any) -> None:
+    clearance = lift.solution.clearance
+    for k in (0, len(clearance.time) // 2, len(clearance.time) - 1):
+        opened.run(f"liftopt.seek({clearance.time[k]})")
+        nearest = clearance.between_bodies
+        apart = 1e3 * nearest.distance[k]
+        told = f"{abs(apart):.0f} mm {'deep' if apart < 0 else 'apart'}"
+        assert opened.page.inner_text("#nearest-0") == told
+        assert opened.page.text_content("#pair-0") == clearance.pairs[nearest.pair[k]].told
+        np.testing.assert_allclose(_placement(opened, "/lift/nearest")[:3, 3], nearest.points[k, 0], atol=DRAWN)
+
+
 def test_the_picture_shows_something_and_the_animation_moves_it(opened: Any, lift: Any) -> None:
     pictures = []
     for share in (0.0, 0.5, 1.0):
@@ -129,7 +141,7 @@ def test_at_the_end_it_repeats_or_stops(opened: Any, lift: Any) -> None:
 
 def test_switches_hide_forces_and_hand_paths(opened: Any) -> None:
     node = "liftopt.viewer.scene_tree.find(['lift', '{}']).object.visible"
-    for switch, name in (("#forces", "force"), ("#paths", "path")):
+    for switch, name in (("#forces", "force"), ("#paths", "path"), ("#nearest", "nearest")):
         opened.page.uncheck(switch)
         assert opened.run(node.format(name)) is False
         opened.page.check(switch)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,12 +22,6 @@ from liftopt.lab.forces.calibration_series import ANY, DECIMALS, Series, mean_se
 from liftopt.lab.forces.voltage_divider import Divider
 from liftopt.lab.mocap.text_file import read_text
 from liftopt.types import Array
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
 
 SCATTER = 0.05  # of a curve's range: the repeatability that data sheets of such sensors promise
 SMALLEST_STEP = 0.5 * 10.0**-DECIMALS  # V or N, between points of a curve

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -119,14 +120,16 @@ def mean_series(series: Sequence[Series], divider: Divider) -> MeanSeries:
         notes.append(f"the converter is at its end from {kept[full][0]:.3g} N on: left out")
         mean, kept = mean[~full], kept[~full]
     if len(mean):
-        fit = isotonic_regression(np.round(mean, DECIMALS))
-        blocks = [slice(start, end) for start, end in zip(fit.blocks[:-1], fit.blocks[1:], strict=True)]
+        # Means of pooled neighbours are rounded too: two that differ by less are one point of the curve.
+        rising = np.round(isotonic_regression(np.round(mean, DECIMALS)).x, DECIMALS)
+        starts = np.flatnonzero(np.diff(rising, prepend=-np.inf))
+        blocks = [slice(start, end) for start, end in pairwise([*starts, len(rising)])]
         pooled = len(mean) - len(blocks)
         if pooled:
             notes.append(
                 f"the mean voltage did not rise at {pooled} of {len(mean)} loads: pooled with their neighbours"
             )
-        mean = np.array([fit.x[block.start] for block in blocks])
+        mean = rising[starts]
         first, kept = kept[0], np.array([kept[block].mean() for block in blocks])
         if first == 0.0 or mean[0] == 0.0:
             kept[0] = 0.0  # what an unloaded sensor shows means no force, though small loads may show the same

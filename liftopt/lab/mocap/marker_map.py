@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import sys
+import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
@@ -17,11 +17,6 @@ from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.lab.mocap.length_units import METRES
 from liftopt.lab.mocap.recording import TO_Z_UP, Recording
 from liftopt.lab.mocap.text_file import read_text
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 SHIPPED = Path(__file__).parent / "maps"
 Labels = tuple[str, ...]

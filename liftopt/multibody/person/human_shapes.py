@@ -29,7 +29,8 @@ SHOES = Colour("shoes", (0.12, 0.12, 0.13, 1.0))
 SIDES, ENDS = ((LEFT, "left"), (RIGHT, "right")), ((1.0, "front"), (-1.0, "back"))
 HAND_THICKNESS = 0.03  # of a flat hand [m]; chosen for this model
 # Girths are maxima; a segment of one radius is a little thinner. Shares of the radius, chosen for this model.
-UPPER_ARM, FOREARM, THIGH, SHANK = 0.85, 0.75, 0.8, 0.85
+UPPER_ARM, FOREARM, THIGH, SHANK = 0.85, 0.75, 0.9, 0.95
+FACE_AHEAD = 0.012  # middle of the head before the neck [m]; chosen for this model
 BESIDE_ARM = 0.004  # between the trunk and a hanging arm [m]; chosen for this model
 
 
@@ -52,13 +53,14 @@ def _lower_body(subject: Subject) -> tuple[Shape, ...]:
     depth = 0.85 * dimension(subject, "buttockdepth")
     # It ends at the base of the spine, above which the trunk moves.
     shapes = _rounded("hip", TROUSERS, 0.95 * breadth, depth, at.hip, at.omphalion, _room(subject))
-    thigh = THIGH * girth_radius(subject, "thighcircumference")
-    spread = min(HIP_JOINT_SPREAD * breadth, _room(subject) - thigh)
+    thigh = min(THIGH * girth_radius(subject, "thighcircumference"), _room(subject))
+    inside = min(HIP_JOINT_SPREAD * breadth, _room(subject) - thigh)
     for side, name in SIDES:
-        y = side * spread
-        hip, knee, ankle = (np.array([0.0, y, z]) for z in (at.hip, at.knee, at.ankle))
+        y = side * HIP_JOINT_SPREAD * breadth
+        knee, ankle = (np.array([0.0, y, z]) for z in (at.knee, at.ankle))
+        top, bottom = (np.array([0.0, side * inside, z]) for z in (at.hip, at.knee))
         shapes += [
-            Capsule(f"{name}_thigh", TROUSERS, hip, knee, thigh),
+            Capsule(f"{name}_thigh", TROUSERS, top, bottom, thigh),
             Capsule(f"{name}_shank", TROUSERS, knee, ankle, SHANK * girth_radius(subject, "calfcircumference")),
             box_at(
                 f"{name}_foot",
@@ -79,7 +81,7 @@ def _trunk(subject: Subject) -> tuple[Shape, ...]:
     )
     across = np.array([0.0, room - girdle, 0.0])
     neck = girth_radius(subject, "neckcircumference")
-    head = dimension(subject, "headlength") / 2.0
+    head, face = dimension(subject, "headlength") / 2.0, np.array([FACE_AHEAD, 0.0, 0.0])
     head_length = SEGMENTS[subject.sex]["head"].length * subject.stature
     brow, chin = at.vertex - head, at.vertex - max(head_length, 2.05 * head) + 0.8 * head
     return (
@@ -87,7 +89,7 @@ def _trunk(subject: Subject) -> tuple[Shape, ...]:
         *_rounded("chest", SHIRT, *chest, at.xiphion, shoulder + girdle, room),
         Capsule("shoulders", SHIRT, _axis(shoulder) - across, _axis(shoulder) + across, girdle),
         Capsule("neck", SKIN, _axis(shoulder), _axis(chin), 0.95 * neck),
-        Capsule("head", SKIN, _axis(chin), _axis(brow), 0.9 * head),
+        Capsule("head", SKIN, _axis(chin) + face, _axis(brow) + face, head),
     )
 
 

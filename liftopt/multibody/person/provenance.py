@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from liftopt.multibody.person.anthropometry import LINK_SOURCES, link_lengths
 from liftopt.multibody.person.bodies import BODY_SOURCE, human_bodies
+from liftopt.multibody.person.comfort import COMFORTS, human_comfort
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
 from liftopt.multibody.person.strength import STRENGTHS
 from liftopt.multibody.person.subject import Subject
@@ -29,7 +32,7 @@ def subject_quantities(subject: Subject) -> tuple[Quantity, ...]:
     Bodies are stated about their own centre of mass in the upright zero pose (X forward, Y to the left, Z up, from
     the feet); angles are in deg.
     """
-    return (*_lengths(subject), *_bodies(subject), *_ranges(), *_strengths(subject))
+    return (*_lengths(subject), *_bodies(subject), *_ranges(), *_comforts(), *_strengths(subject))
 
 
 def _lengths(subject: Subject) -> list[Quantity]:
@@ -61,6 +64,18 @@ def _ranges() -> list[Quantity]:
             Quantity("range of motion", f"{item.joint} {item.positive}", item.upper, "deg", item.upper_source),
             Quantity("speed", f"{item.joint} either way", item.velocity, "rad/s", VELOCITY_SOURCE),
         ]
+    return rows
+
+
+def _comforts() -> list[Quantity]:
+    rows, comfort = [], human_comfort()
+    neutral = np.degrees(comfort.neutral)
+    lower, upper = neutral - np.degrees(comfort.room_lower), neutral + np.degrees(comfort.room_upper)
+    for j, item in enumerate(COMFORTS):
+        values = {"neutral": (neutral[j], "deg"), "from": (lower[j], "deg"), "to": (upper[j], "deg")}
+        values["weight"] = (comfort.weight[j], "")
+        for name, (value, unit) in values.items():
+            rows.append(Quantity("ease", f"{item.joint} {name}", float(value), unit, item.source))
     return rows
 
 

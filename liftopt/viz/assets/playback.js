@@ -66,6 +66,11 @@
         element(`force-${who}-${i}`).textContent = `${at(lift, lift.force[who]).toFixed(1)} N`;
       }
       element(`height-${i}`).textContent = `${at(lift, lift.height).toFixed(3)} m`;
+      if (!lift.nearest) return;
+      const frame = Math.round(Math.min(Math.max(state.time / lift.time.at(-1), 0), 1) * (lift.time.length - 1));
+      const apart = 1000 * lift.nearest.distance[frame];
+      element(`nearest-${i}`).textContent = `${Math.abs(apart).toFixed(0)} mm ${apart < 0 ? "deep" : "apart"}`;
+      element(`pair-${i}`).textContent = lift.nearest.pairs[lift.nearest.pair[frame]];
     });
   }
 
@@ -135,9 +140,19 @@
     mark.style.background = colour;
     name.prepend(mark);
     data.lifts.forEach((lift, i) => add(line, "td", "", `${key}-${i}`));
+    return line;
   }
   data.agents.forEach((agent) => row(agent.colour, `force of ${agent.who}`, `force-${agent.name}`));
   row(object_colour, `height of the ${data.object}'s centre`, "height");
+  if (data.lifts.some((lift) => lift.nearest)) {
+    row(data.nearest_colour, "nearest two bodies", "nearest").className = data.lifts.length > 1 ? "spare" : "";
+    data.lifts.forEach((lift, i) => {
+      const line = add(table, "tr", "");
+      add(line, "td", "", `pair-${i}`).colSpan = data.lifts.length + 1;
+      line.className = "pair";
+      line.hidden = data.lifts.length > 1;
+    });
+  }
   data.lifts.filter((lift) => !lift.solved).forEach((lift) => {
     add(element("facts"), "p", `${lift.name} is not a verified solution: ${lift.status}`).className = "bad";
   });
@@ -161,6 +176,7 @@
   }
   element("forces").addEventListener("change", (event) => show("force", event.target.checked));
   element("paths").addEventListener("change", (event) => show("path", event.target.checked));
+  element("nearest").addEventListener("change", (event) => show("nearest", event.target.checked));
   element("tree").addEventListener("change", (event) => {
     document.body.classList.toggle("bare", !event.target.checked);
     if (event.target.checked) viewer.gui.open();
