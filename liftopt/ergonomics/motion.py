@@ -1,4 +1,4 @@
-"""How a person moves in a lift: the angles that show whether the motion is one that people make, and the hand's path."""
+"""How a person moves in a lift: angles that show whether it is a motion that people make, and the hand's path."""
 
 from __future__ import annotations
 

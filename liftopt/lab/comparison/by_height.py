@@ -31,12 +31,14 @@ class HeightCurves:
         values = self.angles[quantity]
         passed = np.isfinite(values)
         total, count = np.where(passed, values, 0.0).sum(axis=0), passed.sum(axis=0)
-        return np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+        return np.asarray(np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0))
 
 
-# What a quantity of the recordings is in a predicted motion. Their wrist deviation is positive to the thumb.
 def predicted_angles(motion: Motion) -> dict[str, Array]:
-    """Return the angles (K,) of a motion by the recordings' names, with their signs [deg]."""
+    """Return the angles (K,) of a motion by the recordings' names, with their signs [deg].
+
+    Their wrist deviation is positive to the thumb.
+    """
     return {
         "elbow_flex_3d": motion.elbow,
         "shoulder_elev_3d": motion.humeral_elevation,
@@ -53,13 +55,15 @@ def read_height_curves(file: Path) -> HeightCurves:
     Raises:
         InputError: the file is not such a table.
     """
-    with file.open(encoding="utf-8", newline="") as lines:
-        header, *rows = list(csv.reader(lines))
     try:
-        height = np.array([float(name.removesuffix("m")) for name in header[2:]])
-        quantities = dict.fromkeys(row[1] for row in rows)
-        angles = {name: np.array([[float(x) for x in row[2:]] for row in rows if row[1] == name]) for name in quantities}
-    except (ValueError, IndexError) as error:
+        with file.open(encoding="utf-8", newline="") as lines:
+            (*_, quantity), *rows = [(row[:2], row[2:]) for row in csv.reader(lines)]
+        height = np.array([float(name.removesuffix("m")) for name in quantity])
+        named = [(name, [float(angle) for angle in angles]) for (_, name), angles in rows]
+        angles = {name: np.array([own for other, own in named if other == name]) for name, _ in named}
+        if not len(height) or any(values.shape[1:] != height.shape for values in angles.values()):
+            raise ValueError("a row has another number of heights, or there is none")
+    except (OSError, ValueError) as error:
         raise InputError(str(file), str(error), "must be a table of angles by trial, quantity and height") from None
     return HeightCurves(height, angles)
 
@@ -80,9 +84,11 @@ def at_heights(motion: Motion, height: Array) -> dict[str, Array]:
 
 
 def rmse_by_height(motion: Motion, curves: HeightCurves) -> dict[str, float]:
-    """Return the root mean square difference [deg] by quantity, over the heights that both pass; NaN where none is."""
-    predicted, found = at_heights(motion, curves.height), {}
-    for name, values in predicted.items():
+    """Return the root mean square difference [deg] of each recorded quantity over the heights that both pass, or NaN."""
+    found = {}
+    for name, values in at_heights(motion, curves.height).items():
+        if name not in curves.angles:
+            continue
         off = (values - curves.mean(name))[np.isfinite(values) & np.isfinite(curves.mean(name))]
         found[name] = float(np.sqrt(np.mean(off**2))) if len(off) else float("nan")
     return found
