@@ -23,7 +23,6 @@ from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
 
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
-CLEARANCE_IS_KEPT = False  # by the search; until it is, what overlaps is a warning and no failure
 AT_ENDS = 1e-9
 OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
 
@@ -58,7 +57,7 @@ def verify(
         *_ends(problem, spline, knots),
         _objective(problem, knots, result),
     ]
-    if CLEARANCE_IS_KEPT and clearance is not None:
+    if clearance is not None:
         checks.append(_clearance(problem, fine, obstacles, clearance))
     return Verification(tuple(checks), optimality.error, tolerance)
 

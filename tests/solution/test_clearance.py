@@ -30,7 +30,7 @@ SHELF = [{"name": "shelf", "box": [0.5, 0.6, 0.05], "position": [0.7, -0.1, 0.95
 @pytest.fixture(scope="module")
 def light(solved: Callable[..., Any]) -> Any:
     """Return the default lift on a coarse mesh, and its folder; what overlaps in it is left as it is."""
-    return solved("table5", "solver.intervals=10", "solver.starts=1")
+    return solved("table5", "solver.intervals=10", "solver.starts=1", "limits.clearance=off")
 
 
 @pytest.fixture(scope="module")
@@ -223,12 +223,11 @@ def test_a_result_that_is_read_has_the_same_clearance(light: Any) -> None:
         np.testing.assert_array_equal(one.distance, other.distance)
 
 
-def test_once_it_is_kept_what_comes_too_near_is_no_solution(light: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_comes_too_near_is_no_solution(light: Any) -> None:
     from liftopt.search.cache import SolverCache
     from liftopt.search.session import Session
     from liftopt.search.solve import find_lift
 
-    monkeypatch.setattr(verify, "CLEARANCE_IS_KEPT", True)
     scenario = light.solution.scenario
     found = find_lift(Session(scenario.replace({"limits.clearance": "off"}), SolverCache())).best
     for limit in (0.0, 0.2):
