@@ -84,7 +84,7 @@ def at_heights(motion: Motion, height: Array) -> dict[str, Array]:
 
 
 def rmse_by_height(motion: Motion, curves: HeightCurves) -> dict[str, float]:
-    """Return the root mean square difference [deg] of each recorded quantity over the heights that both pass, or NaN."""
+    """Return the root mean square difference [deg] of recorded quantities over the heights that both pass, or NaN."""
     found = {}
     for name, values in at_heights(motion, curves.height).items():
         if name not in curves.angles:
