@@ -10,6 +10,7 @@ from liftopt.assessment.who import HANDS, whose
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import obstacles_of
 from liftopt.scenario.placement import grasp_points
+from liftopt.scenario.task import GraspPlace
 from liftopt.solution.checks import TOUCH
 from liftopt.solution.clearance import WITHIN_BODIES, Clearance, PairClearance
 from liftopt.solution.finding import CLEARANCE, INFO, PERSON, VERDICT, WARNING, Finding
@@ -32,7 +33,7 @@ def clearance_findings(fine: Solution, clearance: Clearance) -> Iterator[Finding
         yield _off(clearance)
     for kind in clearance.kinds:
         near = [item for item in clearance.closest if item.pair.kind == kind.kind]
-        wrong = [item for item in near if item.distance < (limit or 0.0) - TOUCH]
+        wrong = [item for item in near if item.distance < item.pair.asked(limit or 0.0) - TOUCH]
         for item in wrong[:MOST_OF_KIND] or near[:1]:
             yield _distance(clearance, item, limit, bool(wrong), len(wrong) - MOST_OF_KIND)
     yield from _fingers(fine)
@@ -78,7 +79,7 @@ def _distance(clearance: Clearance, item: PairClearance, limit: float | None, wr
         f"{text}.",
         time=item.time,
         value=item.distance,
-        limit=limit,
+        limit=None if limit is None else item.pair.asked(limit),
         unit="m",
         source=SOURCE,
     )
@@ -120,11 +121,12 @@ def _fingers(fine: Solution) -> Iterator[Finding]:
                 continue
             hand, name = f"{whose(person.name)} {HANDS[PERSON]}", fine.object.name
             text = f"At the {end} {hand} holds the {name} from below, {_mm(max(room, 0.0))} above the {below}"
+            height = "height" if isinstance(getattr(fine.scenario.task, end), GraspPlace) else "z"
             yield Finding(
                 f"{CLEARANCE}.fingers",
                 WARNING,
                 f"no room for fingers above the {below} at the {end}",
-                f"{text}; fingers take some {_mm(FINGERS)}. Raise task.{end}.height, or hold it elsewhere with "
+                f"{text}; fingers take some {_mm(FINGERS)}. Raise task.{end}.{height}, or hold it elsewhere with "
                 "object.grasps.",
                 person.name,
                 time=float(fine.time[k]),

@@ -178,8 +178,20 @@ class SoftProblem(Problem):
             amounts = missing[at : at + n].reshape(-1, len(block.labels))
             prices = self.prices[at : at + n].reshape(amounts.shape)
             at += n
-            found += self._of(block, amounts, prices)
+            found += (self._near if block.name == "clearance" else self._of)(block, amounts, prices)
         return tuple(sorted(found, key=lambda violation: -violation.price))
+
+    def _near(self, block: Block, amounts: Array, prices: Array) -> list[Violation]:
+        """Return what comes too near what, of the rows between two bodies (knots, rows)."""
+        assert self.planes is not None
+        separation = next(s for s in self.planes.separations if block.who == f"{s.one} and {s.other}")
+        names, found = np.array(separation.names), []
+        for name in sorted(set(names[amounts > NO_GAP].tolist()) - {""}):
+            own = np.where(names == name, amounts, 0.0)
+            k, j = np.unravel_index(int(own.argmax()), own.shape)
+            most, time = float(own[k, j]), float(self.mesh.phase[k]) * self.task.duration
+            found.append(Violation(block.name, name, time, most, most, "m", float((own * prices).sum())))
+        return found
 
     def _of(self, block: Block, amounts: Array, prices: Array) -> list[Violation]:
         """Return the violations of one block of rows (knots, labels)."""

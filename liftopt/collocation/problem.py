@@ -128,9 +128,12 @@ class Problem:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The agents, the object and the poses of bodies that are kept apart, as the assembly takes them."""
+        return (*self._own_parts, *(Part(pose.kernel, self.layout.select_values(pose.part)) for pose in self.poses))
+
+    @cached_property
+    def _own_parts(self) -> tuple[Part, ...]:
         kernels = enumerate(self.team.kernels)
-        own = [Part(kernel, self.layout.select(i), self.weights(i).range.shape[1]) for i, kernel in kernels]
-        return (*own, *(Part(pose.kernel, self.layout.select_values(pose.part)) for pose in self.poses))
+        return tuple(Part(kernel, self.layout.select(i), self.weights(i).range.shape[1]) for i, kernel in kernels)
 
     @cached_property
     def constraints(self) -> Constraints:
@@ -155,11 +158,14 @@ class Problem:
     def same_structure(self, other: Problem) -> bool:
         """Whether unknowns and rows of both mean the same, so that an optimum of one is a start for the other."""
         rows = ([(block.name, block.who, block.rows) for block in p.constraints.blocks] for p in (self, other))
-        kernels = zip(self.team.kernels, other.team.kernels, strict=True)
         planes = [p.planes.structure if p.planes else None for p in (self, other)]
-        ranged = [[part.n_range for part in p.parts] for p in (self, other)]
-        same = planes[0] == planes[1] and ranged[0] == ranged[1] and all(a is b for a, b in kernels)
-        return self.mesh is other.mesh and same and next(rows) == next(rows)
+        return planes[0] == planes[1] and self.same_unknowns(other) and next(rows) == next(rows)
+
+    def same_unknowns(self, other: Problem) -> bool:
+        """Whether unknowns and what the objective holds of them mean the same in both."""
+        kernels = zip(self.team.kernels, other.team.kernels, strict=True)
+        ranged = [[part.n_range for part in p._own_parts] for p in (self, other)]
+        return self.mesh is other.mesh and ranged[0] == ranged[1] and all(a is b for a, b in kernels)
 
     def interchangeable(self, other: Problem) -> bool:
         """Whether a solver made for one takes the other: only bounds and parameters may differ."""
@@ -172,7 +178,7 @@ class Problem:
     def apart(self, planes: SeparatingPlanes | None) -> Problem:
         """Return the same problem with other planes."""
         other = replace(self, planes=planes)
-        vars(other).update(layout=self.layout, _bounds=self._bounds)
+        vars(other).update(layout=self.layout, _bounds=self._bounds, _own_parts=self._own_parts)
         return other
 
     def weights(self, part: int) -> Weights:

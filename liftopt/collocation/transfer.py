@@ -65,12 +65,18 @@ def transfer_multipliers(problem: Problem, multipliers: Multipliers, other: Prob
     Args:
         problem: what the multipliers belong to.
         multipliers: at an optimum of it.
-        other: the same team and task on another mesh.
+        other: the same team and task on another mesh, or with other planes.
     """
     x, g = np.zeros(other.layout.n_x), np.zeros(other.constraints.linear.shape[0])
-    for one, two in zip(problem.constraints.blocks, other.constraints.blocks, strict=True):
+    known = {(block.name, block.who): block for block in problem.constraints.blocks}
+    for two in other.constraints.blocks:
+        if (one := known.get((two.name, two.who))) is None:  # rows between bodies that had none
+            continue
         before = multipliers.g[one.rows].reshape(-1, len(one.labels))
-        g[two.rows] = _spread(before, _phases(problem.mesh, one), _phases(other.mesh, two)).ravel()
+        same = min(len(one.labels), len(two.labels))
+        g[two.rows].reshape(-1, len(two.labels))[:, :same] = _spread(
+            before[:, :same], _phases(problem.mesh, one), _phases(other.mesh, two)
+        )
     control, force = problem.unpack(multipliers.x)
     x[other.layout.control] = _spread(control, problem.mesh.control_phase, other.mesh.control_phase)
     x[other.layout.force] = _spread(force, problem.mesh.phase, other.mesh.phase)

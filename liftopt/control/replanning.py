@@ -22,7 +22,9 @@ from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
+from liftopt.search.make_clear import Clearer
 from liftopt.search.mesh_accuracy import estimate
+from liftopt.search.optimum_on_mesh import planes_of
 from liftopt.search.session import Session
 from liftopt.search.solve import find_lift, solution_of
 from liftopt.solution.solution import Solution, StartRecord
@@ -65,7 +67,7 @@ class Replanner:
             SolverError: the solver cannot run at all.
         """
         limit = Deadline.after(scenario.solver.time_limit)
-        candidate = None if cold else self.replan(scenario)
+        candidate = None if cold else self._kept_clear(scenario, limit, self.replan(scenario))
         if candidate is not None and candidate.solved:
             result, seconds = candidate.result, time.monotonic() - limit.began
             record = StartRecord(candidate.start, "converged", result.objective, result.iterations, result.seconds)
@@ -95,6 +97,10 @@ class Replanner:
             return None
         self._progress("solving from the last optimum")
         problem = self._cache.problem(scenario, last.spline, self._progress)
+        if not problem.same_unknowns(last.problem):
+            return None
+        if last.problem.planes is not None and scenario.limits.clearance is not None:
+            problem = problem.apart(planes_of(self._cache, last, scenario, problem))
         if not problem.same_structure(last.problem):
             return None
         solver = self._cache.solver(problem, scenario, scenario.solver.name, self._progress)
@@ -104,3 +110,15 @@ class Replanner:
             return None
         self.latest = Candidate(scenario, problem, last.spline, WARM, result)
         return self.latest
+
+    def _kept_clear(self, scenario: Scenario, limit: Deadline, candidate: Candidate | None) -> Candidate | None:
+        """Return a plan with planes for what comes near in it now; None where that does not make it clear."""
+        clearance = scenario.limits.clearance
+        if candidate is None or clearance is None:
+            return candidate
+        solids, name = self._cache.solids(scenario, candidate.problem.team, self._progress), scenario.solver.name
+        clearer = Clearer(solids, clearance, limit, lambda given: self._cache.solver(given, scenario, name))
+        attempt = clearer.make_clear(candidate, polish=False)
+        if attempt.clear:
+            self.latest = attempt.candidate
+        return attempt.candidate if attempt.clear else None

@@ -46,6 +46,15 @@ class SolidPair:
         """The pair in words: ``"right forearm of human and table"``."""
         return f"{self.one.told} and {self.other.told}"
 
+    @property
+    def within_body(self) -> bool:
+        """Whether both solids are of one body."""
+        return self.one.owner == self.other.owner
+
+    def asked(self, clearance: float) -> float:
+        """Return how far the two must keep apart [m] where bodies must keep ``clearance``: parts of one may touch."""
+        return 0.0 if self.within_body else clearance
+
 
 def solid_pairs(
     agents: Sequence[Agent], lifted: LiftedObject, obstacles: Sequence[Solid] = ()

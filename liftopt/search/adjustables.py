@@ -81,11 +81,12 @@ class Adjustable:
 
 
 _REACH, _MOTION = (
-    frozenset({"grasp_closure", "workspace"}),
-    frozenset({"grasp_closure", "workspace", "torque", "velocity"}),
+    frozenset({"grasp_closure", "workspace", "clearance"}),
+    frozenset({"grasp_closure", "workspace", "clearance", "torque", "velocity"}),
 )
 _STRENGTH = frozenset({"torque", "grasp_force"})
 _POSTURE = _REACH | {"torque"}
+_CLEARANCE = frozenset({"clearance"})
 
 
 def adjustables(scenario: Scenario) -> list[Adjustable]:
@@ -114,7 +115,10 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
             lower, higher = f"{name} base {{change:.2f}} m lower", f"{name} base {{change:.2f}} m higher"
             found.append(Adjustable((f"{name}.{agent.height_key}",), 0.01, 0.1, lower, higher, _POSTURE))
     shallower, deeper = "object at most {value:.2f} m deep", "object at least {value:.2f} m deep"
-    return [*found, Adjustable(("object.depth",), 0.01, 0.1, shallower, deeper, _POSTURE)]
+    found.append(Adjustable(("object.depth",), 0.01, 0.1, shallower, deeper, _POSTURE))
+    for key, size in (("object.width", "wide"), ("object.height", "high")):
+        found.append(Adjustable((key,), 0.01, 0.1, f"object at most {{value:.2f}} m {size}", "", _CLEARANCE))
+    return found
 
 
 def _ends(scenario: Scenario, name: str) -> Iterator[tuple[tuple[str, ...], str]]:

@@ -13,9 +13,10 @@ from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.result import Solver
 from liftopt.collocation.spline import Mesh, RestToRestSpline
-from liftopt.scenario.build import agent_key, agent_of, object_key, object_of, task_of
+from liftopt.scenario.build import agent_key, agent_of, object_key, object_of, obstacles_of, task_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.postures import PostureSolver
+from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Progress
 
 T = TypeVar("T")
@@ -35,6 +36,7 @@ class SolverCache:
         """Start with nothing."""
         self._models: dict[str, tuple[Hashable, Any]] = {}
         self._team: Team | None = None
+        self._solids: tuple[Hashable, TeamSolids] | None = None
         self._postures: PostureSolver | None = None
         self._meshes: dict[RestToRestSpline, Mesh] = {}
         self._problems: dict[RestToRestSpline, tuple[Scenario, Problem]] = {}
@@ -85,6 +87,14 @@ class SolverCache:
                 made = Ipopt(problem, options, kernels_for_simd(problem, progress))
             kept = self._solvers[key] = made
         return kept
+
+    def solids(self, scenario: Scenario, team: Team, progress: Progress | None = None) -> TeamSolids:
+        """Return the solids of a team and of the scenario's obstacles; ``progress`` is called when kernels compile."""
+        kept, obstacles = self._solids, scenario.obstacles
+        if kept is None or kept[0] != obstacles or kept[1].team is not team:
+            like = kept[1] if kept else None
+            kept = self._solids = obstacles, TeamSolids.of(team, obstacles_of(scenario), progress, like)
+        return kept[1]
 
     def postures(self, problem: Problem, scenario: Scenario, progress: Progress | None = None) -> PostureSolver:
         """Return the solver of static postures for a lift; ``progress`` is called when kernels must be compiled."""

@@ -17,7 +17,8 @@ from liftopt.errors import SolverError
 from liftopt.search.cache import BANDED
 from liftopt.search.candidate import Candidate
 from liftopt.search.initial_guess import InitialGuess, InitialGuessSet
-from liftopt.search.mesh_refinement import PROMISING, meshes_below
+from liftopt.search.keep_clear import keep_clear
+from liftopt.search.mesh_refinement import meshes_below
 from liftopt.search.multistart import follow_up, solve_all
 from liftopt.search.optima import each_once, same_optimum
 from liftopt.search.optimum_on_mesh import MESH
@@ -71,8 +72,7 @@ def coarse_search(
         idle, varied = min(IDLE * _unseen(tried), MOST_IDLE) * share, MOST_VARIED * share
         tried += vary(solvers, problem, session.postures, results, idle, options.seed, deadline, varied)
         optima = _optima(session, problem, coarse, tried)
-    near = [candidate for candidate in optima if candidate.result.objective <= PROMISING * optima[0].result.objective]
-    chosen = near[: options.starts]
+    chosen = keep_clear(session, optima, ROUGH)
     session.notes.append(
         f"{plain} starts and {len(tried) - plain} variations on {intervals} intervals led to {len(optima)} optima; "
         f"the best {len(chosen)} were taken to {spline.intervals}"

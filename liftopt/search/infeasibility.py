@@ -100,6 +100,7 @@ def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
     share, lifted = f"{100 * violation.share:.0f} %", problem.team.object.name
     words = {
         "grasp_closure": f"{whose(who)} grasp stays {amount:.3f} m off the {lifted} {at}",
+        "clearance": f"{who} come {amount:.3f} m too near each other {at}",
         "workspace": f"{whose(who)} grasp lies {amount:.3f} m outside its half-space {at}",
         "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
         "grasp_force": f"{whose(who)} grasp needs {amount:.3g} N ({share}) more than its cap {at}",

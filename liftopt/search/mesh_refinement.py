@@ -18,7 +18,7 @@ from liftopt.search.candidate import Candidate
 from liftopt.search.found import Found
 from liftopt.search.initial_guess import InitialGuess
 from liftopt.search.mesh_accuracy import TELLING, compared, estimate, unmet
-from liftopt.search.optima import each_once, indistinguishable, is_known, objective_of
+from liftopt.search.optima import PROMISING, each_once, indistinguishable, is_known, objective_of
 from liftopt.search.optimum_on_mesh import optimum_on_mesh
 from liftopt.search.session import Session
 from liftopt.search.solve_starts import solve_starts
@@ -28,8 +28,7 @@ from liftopt.solution.verify import CLOSURE_BETWEEN_KNOTS
 # A mesh that starts are tried on is halved while so many intervals are left: a coarser one leads to worse optima, a
 # finer one takes longer (docs/tuning.md).
 COARSE = 20
-# Optima further above the best one than this are not worth a solve on a finer mesh.
-PROMISING = 1.1
+KEPT_CLEAR = ", kept clear"  # after the name of a start
 
 
 class _OnMesh(Protocol):
@@ -113,7 +112,7 @@ def continue_on_mesh(
             session.record, without_multipliers,
         )  # fmt: skip
         if there is not None and not (without_multipliers and is_known(there.result.objective, found)):
-            found.append(there)
+            found.extend(made_clear(session, there))
 
     for candidate in candidates:
         session.progress(f"solving on {intervals} intervals: {candidate.start}")
@@ -123,6 +122,17 @@ def continue_on_mesh(
         session.progress(f"solving on {intervals} intervals from the motion alone: {origin.start}")
         solve(origin, without_multipliers=True)
     return each_once(found)
+
+
+def made_clear(session: Session, candidate: Candidate) -> list[Candidate]:
+    """Return the clear optimum that a candidate leads to, itself where solids may overlap; none if there is none."""
+    clearer = session.clearer(candidate.problem)
+    if clearer is None:
+        return [candidate]
+    attempt = clearer.make_clear(candidate)
+    if attempt.clear and attempt.candidate is not candidate:
+        session.record(f"{candidate.start}{KEPT_CLEAR}", attempt.candidate.result)
+    return [attempt.candidate] if attempt.clear else []
 
 
 def refine_until_verified(session: Session, found: Found) -> Found:

@@ -9,6 +9,8 @@ import numpy as np
 from liftopt.search.candidate import Candidate
 from liftopt.solution.accuracy import Accuracy
 
+# Optima further above the best one than this are not worth a solve on a finer mesh.
+PROMISING = 1.1
 SAME_OPTIMUM = 1e-4  # relative difference of two objectives
 
 

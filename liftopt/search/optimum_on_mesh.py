@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import PRUNED, STOPPED, SolverResult
 from liftopt.collocation.transfer import transfer, transfer_multipliers
 from liftopt.errors import SolverError
+from liftopt.scenario.model import Scenario
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.types import Progress
+from liftopt.search.make_clear import pairs_in, planes_along
+from liftopt.types import Array, Progress
 
 FASTEST_FIRST = (BANDED, IPOPT)
 IPOPT_ITERATIONS = 200  # from each start, where it takes over from another solver
@@ -45,6 +49,8 @@ def optimum_on_mesh(
     spline, scenario = candidate.spline.on(intervals), candidate.scenario
     problem = cache.problem(scenario, spline, progress)
     start = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, spline)
+    if candidate.problem.planes is not None:
+        problem = problem.apart(planes_of(cache, candidate, scenario, problem, start))
     warm = None
     if not without_multipliers:
         warm = transfer_multipliers(candidate.problem, candidate.result.multipliers, problem)
@@ -65,3 +71,21 @@ def optimum_on_mesh(
         if incumbent is not None or result.status in (STOPPED, PRUNED):
             break
     return None
+
+
+def planes_of(
+    cache: SolverCache, candidate: Candidate, scenario: Scenario, problem: Problem, x: Array | None = None
+) -> SeparatingPlanes:
+    """Return planes for the pairs that a candidate has planes for, along its motion or along ``x`` (n_x,) of a problem.
+
+    Args:
+        cache: where solids come from.
+        candidate: with planes.
+        scenario: of the problem.
+        problem: on the same mesh, or of ``x``.
+        x: the motion; None: the candidate's.
+    """
+    solids, planes = cache.solids(scenario, problem.team), candidate.problem.planes
+    clearance = scenario.limits.clearance or 0.0
+    along, like = (candidate.result.x, planes) if x is None else (x, None)
+    return planes_along(solids, problem, along, pairs_in(solids, planes), clearance, like=like)

@@ -10,7 +10,8 @@ from liftopt.collocation.solvers.result import PRUNED, Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
-from liftopt.search.cache import IPOPT, SolverCache
+from liftopt.search.cache import BANDED, IPOPT, SolverCache
+from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.solution.solution import CUT_SHORT, StartRecord
 from liftopt.types import Progress
 
@@ -33,6 +34,7 @@ class Session:
         limit: deadline of the whole search; it begins after kernels and solvers are compiled.
         records: the starts that count, each with where it led.
         notes: what the user should know.
+        blocked: optima that could not be made clear, on one mesh, the most promising first.
         cut: where the time limit ended the search too early, in one line; empty where it did not.
     """
 
@@ -54,6 +56,7 @@ class Session:
         self.limit, self._finishing, self._stage, self.cut = NEVER, False, "", ""
         self.records: list[StartRecord] = []
         self.notes: list[str] = []
+        self.blocked: list[Attempt] = []
         problem = self.problem(self.spline)
         self.solvers(problem)
         self.postures = cache.postures(problem, scenario, self.progress)
@@ -75,6 +78,20 @@ class Session:
     def solver(self, problem: Problem, name: str, worker: int = 0, rough: float = 0.0) -> Solver:
         """Return a solver by name for a problem; see ``SolverCache.solver``."""
         return self.cache.solver(problem, self.scenario, name, self.progress, worker, rough)
+
+    def clearer(self, problem: Problem, rough: float = 0.0) -> Clearer | None:
+        """Return what makes optima of a problem clear, on any mesh; None where solids may overlap.
+
+        Args:
+            problem: whose team.
+            rough: of its solvers, see ``SolverCache.solver``.
+        """
+        clearance = self.scenario.limits.clearance
+        if clearance is None:
+            return None
+        name = BANDED if rough else self.scenario.solver.name
+        solids = self.cache.solids(self.scenario, problem.team, self.progress)
+        return Clearer(solids, clearance, self.deadline, lambda given: self.solver(given, name, rough=rough))
 
     def solvers(self, problem: Problem) -> list[Solver]:
         """Return the scenario's own solver for a problem, one for each worker that its starts keep busy."""

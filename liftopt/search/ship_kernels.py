@@ -20,6 +20,7 @@ from liftopt.collocation.problem import Team, kernel_requests
 from liftopt.scenario.agents import GRASPS
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
+from liftopt.search.team_solids import TeamSolids
 
 
 def ship(folder: str, every_processor: bool = False) -> bool:
@@ -35,9 +36,11 @@ def ship(folder: str, every_processor: bool = False) -> bool:
     for grasp in get_args(GRASPS):
         scenario = load_scenario(changes=[f"human.grasp={grasp}", f"robot.grasp={grasp}"])
         team = Team.of(agents_of(scenario), object_of(scenario), _print)
-        whole = whole and all(kernel.compiled for kernel in team.kernels)
+        poses = TeamSolids.of(team, (), _print).parts
+        whole = whole and all(kernel.compiled for kernel in (*team.kernels, *(pose.kernel for pose in poses)))
+        requests = kernel_requests(team.agents, team.object) + [(pose.builder, pose.topology) for pose in poses]
         for extensions in processors:
-            simd = load_simd_kernels(kernel_requests(team.agents, team.object), _print, extensions)
+            simd = load_simd_kernels(requests, _print, extensions)
             whole = whole and simd is not None
     return whole
 

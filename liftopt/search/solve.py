@@ -17,6 +17,7 @@ from dataclasses import replace
 from liftopt.assessment.assess import assessed
 from liftopt.collocation.problem import Problem
 from liftopt.scenario.model import Scenario
+from liftopt.search.blocked import explain_blocked
 from liftopt.search.cache import SolverCache
 from liftopt.search.coarse_search import coarse_search
 from liftopt.search.feasibility_screen import too_fast
@@ -80,6 +81,8 @@ def search(session: Session) -> Found:
         session.finish()
         if optima and (found := refine_mesh(session, optima, spline.intervals)) is not None:
             return found
+        if (found := explain_blocked(session, spline)) is not None:
+            return found if found.best.usable else search_wider(session) or found
         starts = guesses.starts(problem, options.starts)
     session.finish()
     session.begin_solving()

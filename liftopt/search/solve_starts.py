@@ -12,11 +12,13 @@ from dataclasses import replace
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import STOPPED, Solver, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
+from liftopt.search.blocked import explain_blocked
 from liftopt.search.cache import IPOPT
 from liftopt.search.candidate import Candidate
 from liftopt.search.found import Found
 from liftopt.search.infeasibility import find_least_violation, infeasible_candidate
 from liftopt.search.initial_guess import InitialGuess
+from liftopt.search.keep_clear import first_clear
 from liftopt.search.multistart import follow_up, solve_all
 from liftopt.search.optimum_on_mesh import IPOPT_ITERATIONS
 from liftopt.search.session import Session, start_record
@@ -42,6 +44,9 @@ def solve_starts(session: Session, spline: RestToRestSpline, starts: Sequence[In
         tried += follow_up(solvers[0], starts, [result for _, result in tried], session.deadline, problem)
     records = [start_record(start.name, result) for start, result in tried]
     found = _pick(session, problem, spline, tried)
+    if not found.best.usable and (blocked := explain_blocked(session, spline)) is not None:
+        session.records += records
+        return blocked
     if not found.best.usable:
         found, more = _from_least_violation(session, found, starts, solvers[0])
         records += more
@@ -71,11 +76,16 @@ def _pick(session: Session, problem: Problem, spline: RestToRestSpline, tried: T
     """Verify candidates, the best first; return the first that is a lift, or the one that violates its limits least."""
     session.progress("verifying with Pinocchio")
     candidates = [Candidate(session.scenario, problem, spline, start.name, result) for start, result in tried]
-    candidates.sort(key=lambda candidate: (not candidate.result.converged, candidate.result.objective))
+    candidates = first_clear(session, sorted(candidates, key=_rank))
+    candidates.sort(key=_rank)
     best = next((candidate for candidate in candidates if candidate.usable), None)
     if best is None:
         best = min(candidates, key=lambda candidate: candidate.verification.max_violation)
     return Found(best, tuple(candidates))
+
+
+def _rank(candidate: Candidate) -> tuple[bool, float]:
+    return not candidate.result.converged, candidate.result.objective
 
 
 def _from_least_violation(

@@ -20,7 +20,9 @@ from liftopt.search.candidate import Candidate
 from liftopt.search.feasibility_screen import too_fast
 from liftopt.search.found import Found
 from liftopt.search.initial_guess import InitialGuess, posture_starts
+from liftopt.search.make_clear import Clearer
 from liftopt.search.mesh_refinement import refine_while
+from liftopt.search.optimum_on_mesh import planes_of
 from liftopt.search.postures import PostureSolver
 from liftopt.search.session import Session
 from liftopt.solution.infeasibility_report import SuggestedChange
@@ -118,15 +120,17 @@ class _Trials:
         if too_fast(problem):
             return None
 
-        def solved(start: InitialGuess, warm: Candidate | None = None) -> Candidate | None:
+        def solved(start: InitialGuess, problem: Problem = problem, warm: Candidate | None = None) -> Candidate | None:
             result = self._solve(problem, scenario, start.x, warm.result.multipliers if warm else None)
-            candidate = Candidate(scenario, problem, spline, start.name, result)
+            candidate = self._clear(Candidate(scenario, problem, spline, start.name, result))
             return candidate if candidate.result.converged and candidate.usable else None
 
         postures = cache.postures(problem, scenario)
-        if near and near.problem.same_structure(problem):
-            holds = self._holds(postures, problem, near)
-            return solved(InitialGuess("near", near.result.x), near) if holds else None
+        if near and near.problem.same_unknowns(problem):
+            kept = problem.apart(planes_of(cache, near, scenario, problem)) if near.problem.planes else problem
+            if kept.same_structure(near.problem):
+                holds = self._holds(postures, problem, near)
+                return solved(InitialGuess("near", near.result.x), kept, near) if holds else None
         deadline, seed = self.session.deadline, scenario.solver.seed
         starts = posture_starts(problem, STARTS, seed, deadline, postures=postures, rounds=ROUNDS)
         self.left -= POSTURES
@@ -143,10 +147,23 @@ class _Trials:
             spline, scenario = coarse.spline.on(intervals), coarse.scenario
             problem = self.session.cache.problem(scenario, spline)
             x = transfer(coarse.problem, coarse.spline, coarse.result.x, problem, spline)
-            return Candidate(scenario, problem, spline, coarse.start, self._solve(problem, scenario, x))
+            return self._clear(Candidate(scenario, problem, spline, coarse.start, self._solve(problem, scenario, x)))
 
         deadline = self.session.deadline
         return refine_while(candidate, lambda coarse: coarse.refinable, refine, deadline, FINEST_CHANGED).solved
+
+    def _clear(self, candidate: Candidate) -> Candidate:
+        """Return a candidate made clear, where its scenario asks for it and it can be; count it as work."""
+        scenario, problem = candidate.scenario, candidate.problem
+        clearance = scenario.limits.clearance
+        if clearance is None or not candidate.result.converged:
+            return candidate
+        solids = self.session.cache.solids(scenario, problem.team)
+        clearer = Clearer(solids, clearance, self.session.deadline, lambda given: self._solver(given, scenario))
+        attempt = clearer.make_clear(candidate, polish=False).candidate
+        more = attempt.result.iterations - candidate.result.iterations
+        self.left -= more * candidate.spline.intervals / INTERVALS
+        return attempt
 
     def _solve(self, problem: Problem, scenario: Scenario, x: Array, warm: Multipliers | None = None) -> SolverResult:
         """Solve from ``x`` (n_x,), and count it as work."""

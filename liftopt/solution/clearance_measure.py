@@ -142,6 +142,8 @@ def _closest(
 ) -> Iterator[PairClearance]:
     """Give where each pair comes nearest that comes nearer than ``near``: its smallest bound is asked first."""
     order = np.flatnonzero(lower < near)
+    if not len(order):
+        return
     order = order[np.lexsort((lower[order], pair[order]))]
     rows, starts = np.unique(pair[order], return_index=True)
     for row, own in zip(rows.tolist(), np.split(order, starts[1:]), strict=True):

@@ -23,7 +23,6 @@ from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
 
 CLOSURE_BETWEEN_KNOTS = 1e-3  # [m]
-CLEARANCE_IS_KEPT = False  # by the search; until it is, what overlaps is a warning and no failure
 AT_ENDS = 1e-9
 OBJECTIVE = 1e-8  # relative, between the solver's functions and Pinocchio
 
@@ -58,7 +57,7 @@ def verify(
         *_ends(problem, spline, knots),
         _objective(problem, knots, result),
     ]
-    if CLEARANCE_IS_KEPT and clearance is not None:
+    if clearance is not None:
         checks.append(_clearance(problem, fine, obstacles, clearance))
     return Verification(tuple(checks), optimality.error, tolerance)
 
@@ -142,15 +141,16 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
 
 
 def _clearance(problem: Problem, motion: Motion, obstacles: Sequence[Solid], clearance: float) -> Check:
-    """How much nearer than asked two bodies come, by coal."""
+    """How much nearer than asked two solids come, by coal."""
     team = problem.team
     agents, lifted = list(zip(team.agents, motion.agents, strict=True)), (team.object, motion.object)
     pairs = solid_pairs(team.agents, team.object, obstacles)
     near = pairs_nearby(motion.time, agents, lifted, pairs, clearance)
-    worst = min(near, key=lambda item: item.distance, default=None)
-    if worst is None or worst.distance >= clearance:
+    short = [item.pair.asked(clearance) - item.distance for item in near]
+    if max(short, default=0.0) <= 0.0:
         return Check("clearance", 0.0, TOUCH, "m", "")
-    return Check("clearance", clearance - worst.distance, TOUCH, "m", f"{worst.pair.told} at {worst.time:.2f} s")
+    worst = near[int(np.argmax(short))]
+    return Check("clearance", max(short), TOUCH, "m", f"{worst.pair.told} at {worst.time:.2f} s")
 
 
 def _ends(problem: Problem, spline: RestToRestSpline, motion: Motion) -> list[Check]:

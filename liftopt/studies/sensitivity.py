@@ -18,6 +18,7 @@ import numpy as np
 
 from liftopt.collocation.motion import motion_at, objective_terms, objective_weights
 from liftopt.collocation.parametric import Optimum, Tangent
+from liftopt.collocation.problem import Problem
 from liftopt.control.replanning import Replanner
 from liftopt.errors import InputError, LiftoptError
 from liftopt.files.entries import FREE
@@ -25,6 +26,7 @@ from liftopt.multibody.trajectory import limit_share
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
+from liftopt.search.carried_planes import carried_planes
 from liftopt.solution.checks import FINER
 from liftopt.solution.grasp_loads import shares
 from liftopt.studies.parameters import Parameter, changed, parameters_of
@@ -227,11 +229,16 @@ class _Differences:
 
     def _tangent(self, parameter: Parameter, value: float) -> Tangent:
         step = STEP * max(abs(value), SMALLEST)
-        before, after = (
-            self.cache.problem(changed(self.candidate.scenario, parameter, change), self.candidate.spline)
-            for change in (-step, step)
-        )
+        before, after = (self._problem(changed(self.candidate.scenario, parameter, change)) for change in (-step, step))
         return self.optimum.tangent(before, after, step)
+
+    def _problem(self, scenario: Scenario) -> Problem:
+        """Return a changed problem, whose bodies are kept apart by the same planes."""
+        problem, planes = self.cache.problem(scenario, self.candidate.spline), self.candidate.problem.planes
+        if planes is None:
+            return problem
+        solids = self.cache.solids(self.candidate.scenario, self.candidate.problem.team)
+        return problem.apart(carried_planes(planes, solids, self.cache.solids(scenario, problem.team)))
 
     def _sides(self, parameter: Parameter, step: float, tangent: Tangent) -> _Sides | str:
         """Return the figures of the lift solved again on both sides, or why they cannot be had."""

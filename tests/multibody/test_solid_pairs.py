@@ -81,6 +81,13 @@ def test_an_arm_that_hangs_is_in_nothing(
         assert min(nearest.values()) > 0.0, min(nearest, key=lambda pair: nearest[pair])
 
 
+def test_parts_of_one_body_may_touch() -> None:
+    """Whatever other bodies must keep: some links of a robot are as near to each other in every posture."""
+    for pair in PAIRS:
+        assert pair.asked(0.1) == (0.0 if pair.kind in ("person", "robot") else 0.1)
+        assert pair.within_body == (pair.kind in ("person", "robot"))
+
+
 @pytest.mark.parametrize("sex", ["male", "female"])
 @pytest.mark.parametrize("body_mass_index", [17.0, 24.5, 35.0])
 def test_the_free_arm_hangs_beside_the_body(sex: Sex, body_mass_index: float, coal_distance: ModuleType) -> None:

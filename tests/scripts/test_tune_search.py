@@ -25,12 +25,12 @@ def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 def test_a_constant_changes_in_every_module_that_has_it_and_comes_back(script: ModuleType) -> None:
-    from liftopt.search import coarse_search, mesh_refinement
+    from liftopt.search import mesh_refinement, optima
 
-    before = mesh_refinement.PROMISING
-    with script.changed("mesh_refinement.PROMISING", 2.5):
-        assert coarse_search.PROMISING == mesh_refinement.PROMISING == 2.5
-    assert coarse_search.PROMISING == mesh_refinement.PROMISING == before
+    before = optima.PROMISING
+    with script.changed("optima.PROMISING", 2.5):
+        assert mesh_refinement.PROMISING == optima.PROMISING == 2.5
+    assert mesh_refinement.PROMISING == optima.PROMISING == before
 
 
 def test_a_constant_that_does_not_exist_is_refused(script: ModuleType) -> None:

@@ -16,8 +16,8 @@ from liftopt.scenario.model import load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.coarse_search import ROUGH, _unseen, coarse_search
 from liftopt.search.initial_guess import InitialGuess, InitialGuessSet, initial_guesses
-from liftopt.search.mesh_refinement import COARSE, PROMISING, meshes_below
-from liftopt.search.optima import SAME_OPTIMUM
+from liftopt.search.mesh_refinement import COARSE, meshes_below
+from liftopt.search.optima import PROMISING, SAME_OPTIMUM
 from liftopt.search.session import Session
 from liftopt.search.solve import search
 from liftopt.search.variations import TURN

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
@@ -29,7 +30,7 @@ SHELF = [{"name": "shelf", "box": [0.5, 0.6, 0.05], "position": [0.7, -0.1, 0.95
 @pytest.fixture(scope="module")
 def light(solved: Callable[..., Any]) -> Any:
     """Return the default lift on a coarse mesh, and its folder; what overlaps in it is left as it is."""
-    return solved("table5", "solver.intervals=10", "solver.starts=1")
+    return solved("table5", "solver.intervals=10", "solver.starts=1", "limits.clearance=off")
 
 
 @pytest.fixture(scope="module")
@@ -222,17 +223,17 @@ def test_a_result_that_is_read_has_the_same_clearance(light: Any) -> None:
         np.testing.assert_array_equal(one.distance, other.distance)
 
 
-def test_once_it_is_kept_what_comes_too_near_is_no_solution(light: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_comes_too_near_is_no_solution(light: Any) -> None:
     from liftopt.search.cache import SolverCache
     from liftopt.search.session import Session
     from liftopt.search.solve import find_lift
 
-    monkeypatch.setattr(verify, "CLEARANCE_IS_KEPT", True)
     scenario = light.solution.scenario
     found = find_lift(Session(scenario.replace({"limits.clearance": "off"}), SolverCache())).best
     for limit in (0.0, 0.2):
         checked = verify.verify(found.problem, found.spline, found.result, 1e-6, (), limit).check("clearance")
-        between = [item.distance for item in clearance_of(between_knots(light.solution)).closest]
-        assert checked.value == pytest.approx(max(limit - min(between), 0.0), abs=1e-6)
-        assert checked.passed == (limit - min(between) <= 1e-3)
+        asked = replace(light.solution, scenario=scenario.replace({"limits.clearance": limit}))
+        short = max(item.pair.asked(limit) - item.distance for item in clearance_of(between_knots(asked)).closest)
+        assert checked.value == pytest.approx(max(short, 0.0), abs=1e-6)
+        assert checked.passed == (short <= 1e-3)
     assert "clearance" not in {check.name for check in found.verification.checks}

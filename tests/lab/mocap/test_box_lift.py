@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -13,6 +14,10 @@ from liftopt.lab.mocap.marker_map import load_marker_map
 from liftopt.lab.mocap.motion_table import read_motion_table
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario
+from liftopt.multibody.person.human import human_agent
+from liftopt.multibody.solid_pairs import solid_pairs
+from liftopt.scenario.build import object_of
+from liftopt.scenario.model import load_scenario
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +53,14 @@ def test_the_subject(recorded: RecordedLift) -> None:
     assert recorded.stature_estimated
     assert 1.5 < recorded.subject.stature < 1.85
     assert len(recorded.stature_by) == 3
+
+
+def test_the_arm_is_never_in_the_body(recorded: RecordedLift, coal_distance: ModuleType) -> None:
+    """A person cannot do that: where the recorded angles did, the collision shapes would be too large."""
+    agent = human_agent(recorded.subject)
+    pairs = solid_pairs([agent], object_of(load_scenario()))
+    nearest = [min(coal_distance.own_distances(agent, pairs, q[3:]).values()) for q in recorded.q[::20]]
+    assert min(nearest) > 0.01
 
 
 def test_limits_hold_and_torques_are_those_of_a_person(recorded: RecordedLift) -> None:

@@ -1,0 +1,109 @@
+"""The promising ones of the optima found, each made clear where bodies overlap in it.
+
+Planes only raise an objective, so optima are taken in the order of theirs as long as they promise to lead below what is
+clear already. The side on which a body passes another is chosen by the overlap; where that leads nowhere, others are
+tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from liftopt.search.candidate import Candidate
+from liftopt.search.make_clear import Attempt, Clearer
+from liftopt.search.optima import PROMISING, each_once, is_known, objective_of
+from liftopt.search.passing_paths import passing_paths
+from liftopt.search.session import Session
+
+# Optima that are tried for each that is wanted, where many cannot be made clear.
+FAILING = 4
+# Of those that failed, so many are led past what they ran into, or taken to its other sides.
+PASSED = 2
+
+
+def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> list[Candidate]:
+    """Return the most promising optima, clear where the scenario asks for it, the best first.
+
+    Args:
+        session: of the search.
+        optima: on one mesh, the best first, each once.
+        rough: of the solvers, see ``SolverCache.solver``.
+    """
+    wanted = session.scenario.solver.starts
+    clearer = session.clearer(optima[0].problem, rough) if optima else None
+    session.blocked = []
+    if clearer is None:
+        return [c for c in optima if c.result.objective <= PROMISING * optima[0].result.objective][:wanted]
+    found: list[Candidate] = []
+    failed: list[Attempt] = []
+    for candidate in optima[: FAILING * wanted]:
+        best = min(map(objective_of, found), default=None)
+        if best is not None and (candidate.result.objective > PROMISING * best or len(found) == wanted):
+            break
+        if session.deadline.passed:
+            break
+        attempt = clearer.make_clear(candidate, polish=False)
+        if attempt.clear:
+            found += [] if is_known(attempt.candidate.result.objective, found) else [attempt.candidate]
+        else:
+            failed.append(attempt)
+    if not found:
+        session.blocked = failed
+        found = _passing(session, clearer, failed[:PASSED]) or _other_sides(clearer, failed[:PASSED])
+    if not found:
+        return []
+    return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
+
+
+def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return candidates of one mesh with the first of them made clear that can be, where the scenario asks for it.
+
+    Args:
+        session: of the search; it notes what cannot be made clear.
+        candidates: those that converged first, the best first.
+    """
+    clearer = session.clearer(candidates[0].problem)
+    if clearer is None:
+        return list(candidates)
+    session.blocked = []
+    for n, candidate in enumerate(candidates):
+        if not candidate.result.converged or session.deadline.passed:
+            break
+        attempt = clearer.make_clear(candidate)
+        if attempt.clear:
+            session.blocked = []
+            return [*candidates[:n], attempt.candidate, *candidates[n + 1 :]]
+        session.blocked.append(attempt)
+    return list(candidates)
+
+
+def _passing(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima in which the object is led past what it ran into."""
+    found: list[Candidate] = []
+    kinematics = session.postures.kinematics
+    for first in failed:
+        origin = first.origin
+        for x in passing_paths(origin.problem, kinematics, clearer.solids, origin.result.x, clearer.deadline):
+            if clearer.deadline.passed:
+                break
+            start = replace(origin, result=replace(origin.result, x=x, converged=False))
+            attempt = clearer.make_clear(start, polish=False, also=first.deep)
+            found += [attempt.candidate] if attempt.clear else []
+        if found:
+            break
+    return found
+
+
+def _other_sides(clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima that pass on another side than the one that led nowhere."""
+    found: list[Candidate] = []
+    for first in failed:
+        if clearer.deadline.passed:
+            break
+        for avoided in dict.fromkeys((first.deep, *(frozenset({pair}) for pair in sorted(first.deep)))):
+            attempt = clearer.make_clear(first.origin, polish=False, avoided=avoided)
+            if attempt.clear:
+                found.append(attempt.candidate)
+                break
+    return found
