@@ -3,9 +3,10 @@
 The grasps are equality constraints between the grasp points (``connect``), so MuJoCo finds the grasp forces itself;
 contacts are off, the virtual joints are welded. Joints get the torques of the solution, between the knots too; three
 hinges through one point are one ball joint and get the moment that these are components of (``mujoco_balls.py``).
+Moments that grasps transmit act on hand and object as they were solved, along world axes.
 
-Two point grasps cannot hold the object about the line through them: the optimal-control problem locks that turn and
-reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
+Two grasps at points cannot hold the object about the line through them: the optimal-control problem locks that turn
+and reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
 
 Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the default lift: the
 object's centre lies above the line of the grasps, and arms that push each other through points buckle at wrist and
@@ -171,6 +172,15 @@ class Simulation:
         return states
 
     @cached_property
+    def _moments(self) -> Array:
+        """What grasps transmit to every body (K, bodies, 3), world axes [Nm]."""
+        moments = np.zeros((len(self._dense.time), self._model.nbody, 3))
+        for agent in self._dense.agents:
+            moments[:, self._model.body(f"grasp_{agent.name}").id] = agent.grasp_moment
+            moments[:, self._model.body(f"{agent.name}_grasp").id] = -agent.grasp_moment
+        return moments
+
+    @cached_property
     def _places(self) -> dict[str, tuple[int, slice]]:
         """Where each joint but the object's stands in qpos, and in qvel."""
         model, balls = self._model, {ball.hinges[-1] for ball in self._balls}
@@ -210,7 +220,7 @@ class Simulation:
         mujoco, data = import_mujoco(), self._data
         mujoco.mj_resetData(self._model, data)
         data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
-        data.qfrc_applied[:] = self._states.tau[k]
+        data.qfrc_applied[:], data.xfrc_applied[:, 3:] = self._states.tau[k], self._moments[k]
         data.qfrc_applied[self._roll] = self._dense.object.wrench[k, 3] * serve
         mujoco.mj_forward(self._model, data)
         # A constraint's force acts on its first body along world axes: on the agent, from the object.
@@ -235,6 +245,7 @@ class Simulation:
     def _advance(self, k: int, force: Array) -> Array:
         """Go from time ``k`` to the next; return the deviations there, those of ``Deviation``."""
         self._data.qfrc_applied[:] = force
+        self._data.xfrc_applied[:, 3:] = self._moments[k : k + 2].mean(axis=0)
         import_mujoco().mj_step(self._model, self._data)
         error, at = self._error(k + 1), self._body
         joints, position, turn = error[self._joints], error[at : at + 3], error[at + 3 : at + 6]

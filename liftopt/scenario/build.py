@@ -25,6 +25,7 @@ from liftopt.types import Array
 
 OBJECT_SPEED = 2.0  # [m/s] and [rad/s], each coordinate: a safe pace beside a person
 ROOM = 5.0  # [m]: half the width of the room the object may move in
+PACE = 2.0  # [s]: duration of the lift that the weight of accelerations is stated for
 
 
 def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tuple[Agent, ...]:
@@ -114,7 +115,7 @@ def task_of(scenario: Scenario) -> LiftTask:
         pose_upper=np.array([ROOM, ROOM, ROOM, roll, pitch, yaw]),
         pose_velocity=np.full(6, OBJECT_SPEED),
         agent_weights=tuple(agent.weight for agent in scenario.agents.values()),
-        acceleration_weight=objective.acceleration_weight,
+        acceleration_weight=objective.acceleration_weight * _pace(scenario),
         force_weight=objective.force_weight,
         range_weight=objective.range_weight,
         tilt_weight=objective.tilt_weight,
@@ -122,6 +123,16 @@ def task_of(scenario: Scenario) -> LiftTask:
         max_grasp_force=limits.max_grasp_force,
         balance_tolerance=limits.balance_tolerance,
     )
+
+
+def _pace(scenario: Scenario) -> float:
+    """Return the factor on the weight of accelerations: in preset natural, a slow lift is as smooth as a fast one.
+
+    People move along the same path with the same profile of speed whatever their pace and load (Atkeson &
+    Hollerbach, 1985, J Neurosci 5:2318-2330). Accelerations fall with the square of the duration, so that the same
+    smoothness costs the same beside effort and posture if their squares count with its fourth power.
+    """
+    return (scenario.duration / PACE) ** 4 if scenario.objective.preset == "natural" else 1.0
 
 
 def motions_of(scenario: Scenario, intervals: int | None = None) -> RestToRestSpline:

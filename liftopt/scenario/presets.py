@@ -16,7 +16,7 @@ OBJECTIVE, PRESET, AGENTS = "objective", "preset", "agents"
 # strength of 40 Nm are its square [Nm].
 DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
     "natural": {
-        OBJECTIVE: {"acceleration_weight": 5.0, "force_weight": 0.1, "range_weight": 100.0, "tilt_weight": 30.0},
+        OBJECTIVE: {"acceleration_weight": 12.0, "force_weight": 0.1, "range_weight": 250.0, "tilt_weight": 50.0},
         "person": {"weight": 1600.0, "grasp": "wrench", "grasp_turn_deg": 60.0},
         "robot": {"weight": 16.0, "grasp": "wrench"},
     },

@@ -9,6 +9,7 @@ import pinocchio as pin
 from scipy.spatial.transform import Rotation
 
 from liftopt.ergonomics.lift import subject_in
+from liftopt.ergonomics.posture import TRUNK
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
@@ -17,8 +18,10 @@ from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.base import base_of
+from liftopt.viz.free_arm import hanging_arm
 from liftopt.viz.holding import held_by_gripper, held_by_hand
-from liftopt.viz.scene_hand import RIGHT
+from liftopt.viz.scene_hand import LEFT, RIGHT
+from liftopt.viz.scene_person import FREE_ARM
 from liftopt.viz.who import robot_of
 
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
@@ -107,10 +110,12 @@ def playback_at(solution: Solution, time: Array) -> Playback:
         upright = {name: list_[0] for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()}
         bases[agent.name] = base_of(agent)
         holding = _holding(solution, track, bases[agent.name], placements, upright, T_world_object)
-        bodies |= {name: _track(list_) for name, list_ in (placements | holding).items()}
+        arm = _free_arm(solution, track, bases[agent.name], placements, upright, T_world_object)
+        bodies |= {name: _track(list_) for name, list_ in (placements | holding | arm).items()}
         forces[agent.name] = _force(agent, track, knots, time, q)
         zero |= upright | dict.fromkeys(holding, np.eye(4))
-        joints[agent.name] = (*placements, *holding)
+        zero |= {name: upright[f"{agent.name}_{TRUNK}"] for name in arm}
+        joints[agent.name] = (*placements, *holding, *arm)
     bodies[lifted.name] = _track(T_world_object)
     zero[lifted.name] = np.eye(4)
     return Playback(time, bodies, forces, zero, joints, bases)
@@ -121,14 +126,32 @@ def _holding(
     upright: dict[str, Array], T_world_object: Array,
 ) -> dict[str, Array]:  # fmt: skip
     """Return T_world_body (K, 4, 4) of what an agent holds with, by body."""
-    lifted, last = solution.scenario.object, list(placements)[-1]
-    half = np.array([lifted.depth, lifted.width, lifted.height]) / 2.0
+    half, last = _half(solution), list(placements)[-1]
     T_base_last = np.linalg.inv(T_world_base) @ upright[last]
     if agent.kind == "person":
         subject = subject_in(solution, agent.name)
         return held_by_hand(f"{agent.name}_right", subject, RIGHT, T_base_last, placements[last], T_world_object, half)
     length = robot_of(solution.scenario, agent).tool.length
     return held_by_gripper(agent.name, length, T_base_last, placements[last], T_world_object, half)
+
+
+def _free_arm(
+    solution: Solution, agent: AgentTrajectory, T_world_base: Array, placements: dict[str, Array],
+    upright: dict[str, Array], T_world_object: Array,
+) -> dict[str, Array]:  # fmt: skip
+    """Return T_world_body (K, 4, 4) of a person's arm that holds nothing; nothing of a robot."""
+    if agent.kind != "person":
+        return {}
+    trunk, subject = f"{agent.name}_{TRUNK}", subject_in(solution, agent.name)
+    T_base_trunk, T_object_world = np.linalg.inv(T_world_base) @ upright[trunk], np.linalg.inv(T_world_object)
+    hanging = hanging_arm(subject, LEFT, T_base_trunk, placements[trunk], np.asarray(T_object_world), _half(solution))
+    return {f"{agent.name}_{FREE_ARM}": hanging}
+
+
+def _half(solution: Solution) -> Array:
+    """Return the half sizes of the object (3,) [m]."""
+    lifted = solution.scenario.object
+    return np.array([lifted.depth, lifted.width, lifted.height]) / 2.0
 
 
 def _check(solution: Solution) -> None:

@@ -29,7 +29,7 @@ from liftopt.viz.scene_shadow import shadow_commands
 from liftopt.viz.who import colour_of, robot_of
 
 WOOD: Colour = (0.78, 0.60, 0.38)
-CONCRETE: Colour = (0.56, 0.60, 0.66)
+CONCRETE: Colour = (0.42, 0.48, 0.58)
 SEE_THROUGH, GHOSTLY = 0.55, 0.15  # opacity of an obstacle, and of what a preset looks through
 SHADE = 0.75  # of a shirt against the arrows of who wears it
 PATH_RADIUS = 0.004  # [m]
@@ -125,10 +125,10 @@ def parts_of(cast: Cast) -> list[Part]:
     parts = [part for agent in cast.solution.agents for part in _figure(cast, agent)]
     size = (scenario.object.depth, scenario.object.width, scenario.object.height)
     parts.append(Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)))
-    return parts + [_obstacle(obstacle) for obstacle in scenario.obstacles]
+    return parts + [obstacle_part(obstacle) for obstacle in scenario.obstacles]
 
 
-def _obstacle(obstacle: Obstacle) -> Part:
+def obstacle_part(obstacle: Obstacle) -> Part:
     """Return a box that stands in the way; see-through, so that it hides nobody."""
     placed = translation(*obstacle.position) @ rotation_z(np.radians(obstacle.yaw_deg))
     mesh = block((0.0, 0.0, 0.0), obstacle.box, edge=0.004).seen_from(placed)

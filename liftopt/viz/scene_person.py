@@ -35,6 +35,7 @@ SHIRT: Colour = (0.16, 0.40, 0.66)
 TROUSERS: Colour = (0.22, 0.25, 0.32)
 SHOES: Colour = (0.10, 0.10, 0.12)
 SOLES: Colour = (0.80, 0.80, 0.80)
+FREE_ARM = "free_arm"  # ends the name of its body
 TO_SIDE = (0.0, 1.0, 0.0)
 # Stands in for the clothes, and for girths that ANSUR II measures at their largest [fractions of a radius].
 SLACK = 1.06
@@ -43,16 +44,17 @@ SLACK = 1.06
 def person_parts(name: str, subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
     """Return the subject upright at the zero pose: feet at the origin, facing +X, arms hanging, palms forward.
 
-    Legs and pelvis are on joint GT3, the trunk with head and the free left arm, hand included, on Q3, the right arm on
-    Q6 (upper arm) and Q8 (forearm), each called after the person: ``human_Q3``. The hand that holds is not in it.
+    Legs and pelvis are on joint GT3, the trunk with the head on Q3, the right arm on Q6 (upper arm) and Q8 (forearm),
+    each called after the person: ``human_Q3``; the free left arm, hand included, is a body of its own, ``FREE_ARM``.
+    The hand that holds is not in it.
     """
-    trunk = f"{name}_Q3"
+    trunk, free = f"{name}_Q3", f"{name}_{FREE_ARM}"
     parts = [
         *_legs(f"{name}_GT3", subject),
         Part(trunk, "trunk", shirt, _trunk(subject)),
         *head_parts(subject, trunk, SKIN),
     ]
-    for side, bodies, which in ((LEFT, (trunk, trunk), "left"), (RIGHT, (f"{name}_Q6", f"{name}_Q8"), "right")):
+    for side, bodies, which in ((LEFT, (free, free), "left"), (RIGHT, (f"{name}_Q6", f"{name}_Q8"), "right")):
         sleeve, upper, forearm = _arm(subject, side)
         parts += [
             Part(bodies[0], f"{which}_sleeve", shirt, sleeve),
@@ -61,7 +63,7 @@ def person_parts(name: str, subject: Subject, shirt: Colour = SHIRT) -> list[Par
         ]
     # The palm of the free hand faces the thigh.
     hand = resting_hand(subject, LEFT).seen_from(T_person_palm(subject, LEFT) @ rotation_x(-np.pi / 2))
-    parts.append(Part(trunk, "left_hand", SKIN, hand))
+    parts.append(Part(free, "left_hand", SKIN, hand))
     return parts
 
 

@@ -11,12 +11,13 @@ from liftopt.assessment.who import who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
-from liftopt.viz.scene import Cast
+from liftopt.viz.scene import Cast, obstacle_part
 from liftopt.viz.who import lead_of
 
 Box = list[list[float]]
 # Around joints: what of a person, a robot and the hands is in view [m].
 BODY, ROBOT, HANDS = 0.25, 0.05, 0.18
+NEARBY = 0.5  # of an obstacle, so much around everybody is in view [m]
 # A robot's pedestal ahead of its base, behind it and to its sides, and its head above it [m].
 AHEAD, BEHIND, ASIDE, HEAD = 0.2, 0.5, 0.35, 0.65
 # From where an agent is seen in its own preset: ahead of it, to its left, up.
@@ -52,7 +53,8 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
     """Return the presets for one lift, or for two that are shown together."""
     agents = agents_in(casts)
     boxes = {agent.name: _agent_box(casts, agent) for agent in agents}
-    whole = _plain(np.vstack(list(boxes.values())))
+    around = np.vstack(list(boxes.values()))
+    whole = _plain(np.vstack([around, *_obstacle_boxes(casts, around)]))
     points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
     first = lead_of(agents)
     aside = any(cast.offset != casts[0].offset for cast in casts)
@@ -142,6 +144,17 @@ def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
         points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
     room = 0.0 if agent.kind == "person" else ROBOT
     return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
+
+
+def _obstacle_boxes(casts: Sequence[Cast], around: Array) -> list[Array]:
+    """Return corners (2, 3) of the obstacles of all lifts, cut off a little way from what ``around`` (n, 3) holds."""
+    low, high = around.min(axis=0) - NEARBY, around.max(axis=0) + NEARBY
+    found = []
+    for cast in casts:
+        for obstacle in cast.solution.scenario.obstacles:
+            corners = obstacle_part(obstacle).mesh.vertices + cast.offset
+            found.append(np.clip([corners.min(axis=0), corners.max(axis=0)], low, high))
+    return found
 
 
 def _plain(points: Array, room: float = 0.0) -> Box:

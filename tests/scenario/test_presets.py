@@ -32,7 +32,7 @@ KEYS = (
     "anna.weight", "anna.grasp", "anna.grasp_turn_deg", "near.weight", "near.grasp", "near.grasp_turn_deg",
     "objective.acceleration_weight", "objective.force_weight", "objective.range_weight", "objective.tilt_weight",
 )  # fmt: skip
-NATURAL = (1600.0, "wrench", 60.0, 16.0, "wrench", 30.0, 5.0, 0.1, 100.0, 30.0)
+NATURAL = (1600.0, "wrench", 60.0, 16.0, "wrench", 30.0, 12.0, 0.1, 250.0, 50.0)
 PAPER = (1.0, "point", 30.0, 1.0, "point", 30.0, 0.5, 0.01, 0.0, 0.0)
 
 
@@ -61,7 +61,7 @@ def test_it_is_the_same_in_python() -> None:
     assert values(paper) == PAPER == values(Scenario(agents=made, objective={"preset": "paper"}, **others))
     said = {**made, "near": Robot(model="sawyer", weight=3.0)}
     assert Scenario(agents=said, objective=Objective(preset="paper"), **others).value("near.weight") == 3.0
-    assert Objective().range_weight == 100.0 and Objective(preset="paper").range_weight == 0.0
+    assert Objective().range_weight == 250.0 and Objective(preset="paper").range_weight == 0.0
 
 
 @pytest.mark.parametrize("order", list(permutations(("objective.preset", "anna.weight", "near.grasp"))))
@@ -80,7 +80,7 @@ def test_another_preset_drops_what_the_same_changes_do_not_say(order: tuple[str,
 def test_the_command_line_does_the_same() -> None:
     natural = load_scenario("table5", ["robot.weight=2", "objective.preset=natural", "object.mass=3"])
     assert (natural.value("human.weight"), natural.value("human.grasp")) == (1600.0, "wrench")
-    assert (natural.value("robot.weight"), natural.objective.range_weight) == (2.0, 100.0)
+    assert (natural.value("robot.weight"), natural.objective.range_weight) == (2.0, 250.0)
     assert load_scenario("table5", ["objective.preset=paper"]) == load_scenario("table5")
 
 
@@ -143,5 +143,5 @@ def test_help_tells_the_default_by_preset() -> None:
     told = dict(scenario_from_dict(TABLES).describe())
     assert told["anna.weight"].endswith("; default 1600.0 (natural), 1.0 (paper)")
     assert told["near.grasp"].endswith("; default wrench (natural), point (paper)")
-    assert told["objective.tilt_weight"].endswith("; default 30.0 (natural), 0.0 (paper)")
+    assert told["objective.tilt_weight"].endswith("; default 50.0 (natural), 0.0 (paper)")
     assert told["objective.preset"].endswith("; default natural")

@@ -89,6 +89,20 @@ def test_obstacles_are_drawn_where_they_stand_and_see_through(solution: Any) -> 
     np.testing.assert_allclose(part.mesh.vertices.max(axis=0), [0.9, 0.5, 0.2], atol=1e-9)
 
 
+def test_an_obstacle_is_in_view_as_far_as_it_is_near(solution: Any) -> None:
+    """A wall 10 m long beside the lift, of which half a metre around everybody is shown."""
+    playback = playback_at(solution, solution.time[:1])
+    bare, walled = (
+        np.array(views_of([Cast(replace(solution, scenario=scenario), playback, "/lift")])[0].box)
+        for scenario in (
+            solution.scenario,
+            solution.scenario.replace({"obstacles": [{"box": [10.0, 0.1, 2.0], "position": [0.0, 0.7, 1.0]}]}),
+        )
+    )
+    np.testing.assert_allclose(walled[:, 0], bare[:, 0] + [-0.5, 0.5], atol=2e-3)
+    assert walled[1, 1] == pytest.approx(0.75, abs=2e-3)
+
+
 def test_a_picture_is_written_and_wrong_words_are_refused(solution: Any, tmp_path: Path) -> None:
     lift = lo.Solution.of(solution)
     lift.picture(tmp_path / "new" / "lift.png", time=1.0, view="side")

@@ -9,7 +9,20 @@ import numpy as np
 
 from liftopt.multibody.agent import Comfort
 from liftopt.multibody.person.range_of_motion import RANGES
-from liftopt.multibody.sources import MODEL_CHOICE, Source
+from liftopt.multibody.sources import Source
+
+# The open-packed position, in which a shoulder's capsule is at its loosest, is at 30 to 60 deg of abduction.
+SHOULDER_AT_REST = Source(
+    "Lin et al. (2007), Physical Therapy 87:1669-1682: the glenohumeral joint rests at 49.8 deg of abduction",
+    "secondary",
+)
+ACGIH_TURN = Source("ACGIH TLV for lifting: for lifts that begin within 30 deg of the sagittal plane", "secondary")
+# RULA's best lower arm is flexed by 60 to 100 deg; ISO 11064-4 has 70 to 135 deg at a workstation.
+ELBOW_AT_EASE = Source(
+    "McAtamney & Corlett (1993), Applied Ergonomics 24:91-99 (RULA), and ISO 11064-4:2004", "secondary"
+)
+MIDDLE = Source("McAtamney & Corlett (1993), Applied Ergonomics 24:91-99 (RULA): forearm in mid-range", "secondary")
+UPRIGHT = Source("RULA's best posture; the room is the range of motion", "secondary")
 
 
 @dataclass(frozen=True)
@@ -19,8 +32,7 @@ class JointComfort:
     Attributes:
         joint: ``"Q1"`` to ``"Q10"``.
         neutral: angle that costs nothing [deg].
-        lower, upper: comfortable angles on either side [deg]; None is the end of the range of motion.
-        weight: how much the end of the room counts beside that of other joints.
+        lower, upper: ends of the comfortable angles on either side [deg]; None is the end of the range of motion.
         source: of all of it.
     """
 
@@ -28,22 +40,19 @@ class JointComfort:
     neutral: float = 0.0
     lower: float | None = None
     upper: float | None = None
-    weight: float = 1.0
-    source: Source = MODEL_CHOICE
+    source: Source = UPRIGHT
 
 
-# The rest stand upright with the arm hanging. The upper arm a little away from the trunk, the elbow bent and the
-# forearm half pronated is how hands hold an edge; a turn of the trunk under load is what guides to lifting advise
-# against first.
+# The upper arm's room is between hanging and horizontal, which is where RULA's last band begins.
 COMFORTS: tuple[JointComfort, ...] = (
     JointComfort("Q1"),
     JointComfort("Q2"),
-    JointComfort("Q3", weight=4.0),
-    JointComfort("Q4", neutral=-30.0, lower=-90.0, upper=-10.0),
+    JointComfort("Q3", lower=-30.0, upper=30.0, source=ACGIH_TURN),
+    JointComfort("Q4", neutral=-50.0, lower=-90.0, upper=0.0, source=SHOULDER_AT_REST),
     JointComfort("Q5"),
     JointComfort("Q6"),
-    JointComfort("Q7", neutral=-80.0),
-    JointComfort("Q8", neutral=-80.0),
+    JointComfort("Q7", neutral=-80.0, lower=-135.0, upper=-60.0, source=ELBOW_AT_EASE),
+    JointComfort("Q8", neutral=-80.0, source=MIDDLE),
     JointComfort("Q9"),
     JointComfort("Q10"),
 )
@@ -58,6 +67,6 @@ def human_comfort() -> Comfort:
         neutral=np.array([radians(at.neutral) for at in COMFORTS]),
         room_lower=np.array([radians(at.neutral - end) for at, end in zip(COMFORTS, lower, strict=True)]),
         room_upper=np.array([radians(end - at.neutral) for at, end in zip(COMFORTS, upper, strict=True)]),
-        weight=np.array([at.weight for at in COMFORTS]),
+        weight=np.ones(len(COMFORTS)),
         square_weight=np.zeros(len(COMFORTS)),
     )
