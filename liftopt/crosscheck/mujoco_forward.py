@@ -8,7 +8,7 @@ Moments that grasps transmit act on hand and object as they were solved, along w
 Two grasps at points cannot hold the object about the line through them: the optimal-control problem locks that turn
 and reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
 
-Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the default lift: the
+Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the paper's lift: the
 object's centre lies above the line of the grasps, and arms that push each other through points buckle at wrist and
 forearm, where there is little inertia. So a feedback holds joints and object to the solution, ``M (w^2 e + 2 w de/dt)``
 with the inertia matrix M of the moment; what it adds to the solved torques is reported.
@@ -35,7 +35,7 @@ SETTLING = 0.02  # time constant with which the constraints close a gap of the g
 HARDNESS = 0.9999  # of the constraints: the most MuJoCo allows, so its grasp forces are good to some 1e-3
 WINDOW = 0.05  # [s]
 LOST = 1.0  # [rad, m]: a simulation that is this far off is stopped
-# Of the feedback [rad/s]. Deviations grow as exp(49 t) at worst on the default lift and exp(114 t) on a lift with the
+# Of the feedback [rad/s]. Deviations grow as exp(49 t) at worst on the paper's lift and exp(114 t) on a lift with the
 # arm nearly straight, where humeral rotation meets hardly any inertia (eigenvalues of the linearised simulation).
 BANDWIDTH = 160.0
 

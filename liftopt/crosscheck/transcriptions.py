@@ -2,7 +2,7 @@
 
 The first starts from the solution, the second from the first one's optimum, so that optima of one basin are compared,
 not luck. What they have in common is the continuous problem; as h goes to 0 both objectives must go to its optimum: the
-spline's at second order, from above, Hermite-Simpson's much faster. On the default lift
+spline's at second order, from above, Hermite-Simpson's much faster. On the paper's lift
 
     N                     10       20       40       80      160
     spline J          870.67   835.41   822.51   818.70   817.66
@@ -37,7 +37,7 @@ from liftopt.solution.solution import Solution
 from liftopt.types import Array, Progress
 
 MESHES = (10, 20, 40, 80, 160)
-LIMIT_MESH = 20  # on which the limit is taken: on the default lift it is there to 3e-5
+LIMIT_MESH = 20  # on which the limit is taken: on the paper's lift it is there to 3e-5
 CLOSER = 0.6  # of the distance is left, at most, on half the step
 
 
