@@ -98,9 +98,17 @@ def search_wider(session: Session) -> Found | None:
     tries, seed = WIDER * session.scenario.solver.tries, session.scenario.solver.seed + 1
     if not tries or session.deadline.passed:
         return None
-    guesses = _guesses(session, session.problem(session.spline), tries, seed, tries)
-    optima = coarse_search(session, session.spline, guesses, tries, LEAN) if guesses else []
-    return refine_mesh(session, optima, session.spline.intervals) if optima else None
+    problem, blocked = session.problem(session.spline), bool(session.blocked)
+    guesses = _guesses(session, problem, tries, seed, tries)
+    if guesses is None:
+        return None
+    optima = coarse_search(session, session.spline, guesses, tries, LEAN)
+    if optima:
+        return refine_mesh(session, optima, session.spline.intervals)
+    if blocked and not session.blocked:  # there is no coarser mesh; other postures may be clear
+        found = solve_starts(session, session.spline, guesses.starts(problem, tries))
+        return found if found.best.usable else None
+    return None
 
 
 def _guesses(session: Session, problem: Problem, most: int, seed: int, tries: int) -> InitialGuessSet | None:
