@@ -51,6 +51,8 @@ def test_both_tables_and_the_verdict_on_both_are_in_one_report(result, monkeypat
         assert verdict is passed
         assert "The solved motion holds." in text
         assert "Hermite-Simpson" in text
+        kept_apart = result.solution.scenario.limits.clearance is not None
+        assert ("Both leave clearance out" in text) is kept_apart
 
 
 def test_command_passes_the_verdict_on_a_folder_on(result, monkeypatch, capsys):
