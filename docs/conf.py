@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE))  # drawings, tables, mathml
+sys.path.insert(0, str(HERE))  # drawings, tables, mathml, pictures
 
 import liftopt  # noqa: E402
+from pictures import written_pictures  # noqa: E402
 
 project = "liftopt"
 version = release = liftopt.__version__
@@ -40,6 +41,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["gallery"],
     "filename_pattern": r"\.py$",
     "within_subsection_order": "tables.gallery_place",
+    "image_scrapers": ("matplotlib", written_pictures),
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_signature": False,

@@ -97,6 +97,7 @@ def _obstacles(kind: str, changes: dict[str, Any], rng: np.random.Generator) -> 
     if found is None:
         return []
     size, place = ([round(float(v), 3) for v in values] for values in found)
+    place[2] += size[2] / 2  # from its underside to its centre
     return [{"name": kind, "box": size, "position": place}]
 
 

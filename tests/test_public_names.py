@@ -40,7 +40,6 @@ built = lo.Scenario(
         start=lo.GraspPlace(height=0.9, human_distance=0.4),
         end=lo.GraspPlace(height=1.4, human_distance=0.4),
     ),
-    objective=lo.Objective(preset="paper"),
     solver=lo.Solver(intervals=10, starts=1),
 )
 assert lo.solve(built).objective == solution.objective

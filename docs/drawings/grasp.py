@@ -51,7 +51,7 @@ def _forces(axes: Axes) -> None:
     arrow(axes, centre, centre - [0.0, PER_NEWTON * weight], INK, linewidth=2.0)
     axes.annotate(f"weight {weight:.0f} N", centre - [0.0, PER_NEWTON * weight], xytext=(0, -9),
                   textcoords="offset points", ha="center", fontsize=8, zorder=8)  # fmt: skip
-    axes.set_title("Point grasp: a force at a point (default lift at t = 0)")
+    axes.set_title("A force at each grasp (default lift at t = 0)")
     axes.set(xlim=(-0.02, 1.32), ylim=(0.64, 1.12))
     bare(axes)
 

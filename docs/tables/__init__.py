@@ -36,12 +36,16 @@ def write_tables(folder: Path) -> None:
     from tables.commands import commands
     from tables.json_keys import json_keys
     from tables.names import urdf_names
+    from tables.presets import presets
     from tables.result import attributes, solution_attributes, variables
     from tables.rooms import rooms
     from tables.scenario import scenario_keys
     from tables.terminal import terminal
 
     folder.mkdir(parents=True, exist_ok=True)
-    told = (scenario_keys, variables, attributes, solution_attributes, json_keys, urdf_names, rooms, commands, terminal)
+    told = (
+        scenario_keys, presets, variables, attributes, solution_attributes, json_keys, urdf_names, rooms, commands,
+        terminal,
+    )  # fmt: skip
     for make in told:
         (folder / f"{make.__name__}.md").write_text(make(), encoding="utf-8")

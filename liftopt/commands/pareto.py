@@ -27,8 +27,8 @@ def add_pareto_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "pareto",
         help="what the person gains where the robot works more: the front of their efforts",
-        description="Solve a scenario for many ratios of human to robot weight, 100 : 1 to 1 : 100, keep what no other "
-        "compromise beats in both efforts, and write pareto.csv, pareto.json and a plot.",
+        description="Solve a scenario for many ratios of human to robot weight, from 100 times to a hundredth of the "
+        "preset's, keep what no other compromise beats in both efforts, and write pareto.csv, pareto.json and a plot.",
         allow_abbrev=False,
     )
     parser.add_argument(

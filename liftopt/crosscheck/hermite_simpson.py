@@ -1,14 +1,16 @@
 """A second transcription of the same lift: Hermite-Simpson on the states, as a check on the spline collocation.
 
 Nothing of ``liftopt.collocation``'s spline, kernels, constraints or assembly is used; only the task (limits, weights).
-Unknowns are, at the nodes and at the middles of N intervals, the states (q, v), the controls (a, the grasp forces f
-and the joint torques tau). In the separated form of Betts (2010, Practical Methods for Optimal Control and Estimation
-Using Nonlinear Programming, section 4.6), for x = (q, v) with rate F = (v, a), a middle m between nodes k and k + 1:
+Unknowns are, at the nodes and at the middles of N intervals, the states (q, v), the controls (a, the grasp forces f,
+the moments m of grasps that transmit them, and the joint torques tau). In the separated form of Betts (2010, Practical
+Methods for Optimal Control and Estimation Using Nonlinear Programming, section 4.6), for x = (q, v) with rate
+F = (v, a), a middle m between nodes k and k + 1:
 
     x_m = (x_k + x_k+1) / 2 + h / 8 (F_k - F_k+1),        x_k+1 - x_k = h / 6 (F_k + 4 F_m + F_k+1).
 
-Dynamics are implicit: ``tau = RNEA(q, v, a, f)`` and the object's balance are equations at every node and middle, so
-no mass matrix is inverted. The objective is integrated by Simpson's rule, the same weights as the defects.
+Dynamics are implicit: ``tau = RNEA(q, v, a, f, m)`` and the object's balance are equations at every node and middle,
+so no mass matrix is inverted. What the grasps allow holds there too. The objective is integrated by Simpson's rule, the
+same weights as the defects.
 
 Loop closure makes the states dependent: a differential-algebraic system of index 3. Closing the loop at position,
 velocity and acceleration level everywhere would give dependent rows, closing it at no level would let it drift. Here
@@ -33,6 +35,7 @@ import casadi as ca
 import numpy as np
 
 from liftopt.collocation.task import LiftTask
+from liftopt.crosscheck.holds import FORCE_UNIT, MOMENT_UNIT
 from liftopt.crosscheck.instant import FORCE_SIZE, OBJECT_SIZE, Coordinates, Instant, instant
 from liftopt.crosscheck.integrand import integrand
 from liftopt.errors import SolverError
@@ -40,7 +43,7 @@ from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.types import Array
 
 FEWEST = 2
-TORQUE_UNIT, FORCE_UNIT = 10.0, 10.0  # what the solver sees as one: near the size of what is found [Nm, N]
+TORQUE_UNIT = 10.0  # what the solver sees as one, near the size of what is found [Nm]
 TOLERANCE = 1e-7
 
 
@@ -51,6 +54,7 @@ class Points:
     Attributes:
         q, v, a: (2 N + 1, n_q) of ``Coordinates`` [rad, m and per s, per s^2].
         force: (2 N + 1, 3 agents) on the object, world axes [N].
+        moment: (2 N + 1, 3 agents that transmit moments) on the object about the grasp points, world axes [Nm].
         tau: (2 N + 1, n_joints) [Nm].
     """
 
@@ -58,7 +62,18 @@ class Points:
     v: Array
     a: Array
     force: Array
+    moment: Array
     tau: Array
+
+    @staticmethod
+    def of(y: Array, at: Coordinates) -> Points:
+        """Read points off their rows (2 N + 1, n_y)."""
+        return Points(*np.split(y, np.cumsum(at.sizes[:-1]), axis=1))
+
+    @property
+    def y(self) -> Array:
+        """(2 N + 1, n_y) everything, one row a point."""
+        return np.hstack([getattr(self, field.name) for field in fields(self)])
 
     def every(self, step: int) -> Points:
         """Return the points of a mesh that is ``step`` times as coarse."""
@@ -127,9 +142,7 @@ class HermiteSimpson:
     @property
     def units(self) -> Array:
         """(n_y,) what one of each unknown of a point stands for."""
-        return np.concatenate(
-            [np.ones(3 * self.at.n_q), np.full(self.at.n_force, FORCE_UNIT), np.full(self.at.n_joints, TORQUE_UNIT)]
-        )
+        return np.repeat([1.0, 1.0, 1.0, FORCE_UNIT, MOMENT_UNIT, TORQUE_UNIT], self.at.sizes)
 
     def solve(self, start: Points, *, max_iterations: int = 300, seconds: float = 600.0) -> Optimum:
         """Find the optimum nearest to ``start`` with IPOPT.
@@ -139,8 +152,7 @@ class HermiteSimpson:
         """
         solver, lower_g, upper_g, constraints = self._solver(max_iterations, seconds)
         lower, upper = self._bounds()
-        y0 = np.hstack([start.q, start.v, start.a, start.force, start.tau]) / self.units
-        x0 = np.clip(y0.ravel(), lower, upper)
+        x0 = np.clip((start.y / self.units).ravel(), lower, upper)
         began = time.perf_counter()
         try:
             found = solver(x0=x0, lbx=lower, ubx=upper, lbg=lower_g, ubg=upper_g)
@@ -150,8 +162,7 @@ class HermiteSimpson:
         x = np.asarray(found["x"]).ravel()
         g = np.asarray(constraints(x)).ravel()
         excess = np.concatenate([lower_g - g, g - upper_g, lower - x, x - upper])
-        y = x.reshape(self.n_points, -1) * self.units
-        points = Points(*np.split(y, np.cumsum([*[self.at.n_q] * 3, self.at.n_force]), axis=1))
+        points = Points.of(x.reshape(self.n_points, -1) * self.units, self.at)
         gaps = np.asarray(self.instant.closure(points.q[1::2].T)).reshape(-1, FORCE_SIZE, self.intervals)
         return Optimum(
             self.intervals,
@@ -211,7 +222,7 @@ class HermiteSimpson:
     def _rows(self, q: Any, v: Any, a: Any, y: Any) -> list[tuple[Any, float, float]]:
         """Return the constraints, one column a point or an interval, each with its lower and upper bound."""
         task, everywhere = self.task, self.n_points
-        tolerance, unserved = task.balance_tolerance, self.object.unserved_row()
+        tolerance, unserved = task.balance_tolerance, None if self.at.turning else self.object.unserved_row()
         served = [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
         return [
             *((defect, 0.0, 0.0) for defect in self.defects(q, v, a)),
@@ -219,6 +230,7 @@ class HermiteSimpson:
             (self.instant.balance.map(everywhere)(y)[served, :], -tolerance, tolerance),
             (self.instant.closure.map(self.intervals + 1)(q[:, ::2]), 0.0, 0.0),
             (self.instant.grasp.map(everywhere)(y) / task.max_grasp_force**2, -np.inf, 1.0),
+            (self.instant.hold.map(everywhere)(y), 0.0, np.inf),
             (self.instant.workspace.map(everywhere)(q), 0.0, np.inf),
         ]
 
@@ -241,5 +253,6 @@ class HermiteSimpson:
         q = [*(getattr(limit, f"q_{side}") for limit in limits), pose[at.unlocked]]
         v = [*(sign * limit.velocity for limit in limits), sign * task.pose_velocity[at.unlocked]]
         a, force = np.full(at.n_q, sign * np.inf), np.full(at.n_force, sign * task.max_grasp_force)
+        moment = np.repeat([sign * self.agents[i].grasp.max_moment for i in at.turning], FORCE_SIZE)
         tau = [getattr(limit, f"tau_{side}") for limit in limits]
-        return np.asarray(np.concatenate([*q, *v, a, force, *tau]) / self.units, dtype=np.float64)
+        return np.asarray(np.concatenate([*q, *v, a, force, moment, *tau]) / self.units, dtype=np.float64)

@@ -1,7 +1,8 @@
 """The equations of a lift at one instant, as CasADi expressions, written apart from the knot kernels of the solve.
 
 Agents: Pinocchio's RNEA with the grasp reaction as an external force on the joint that carries the grasp. Object:
-Newton's and Euler's equations in closed form, no Pinocchio. Both with the models' numbers in place.
+Newton's and Euler's equations in closed form, no Pinocchio. Both with the models' numbers in place. A hold without
+moments has no unknowns for them; where one hold has them, they serve all six rows of the object's balance.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.task import LiftTask
+from liftopt.crosscheck.holds import room
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.types import Array
 
@@ -29,18 +31,23 @@ class Coordinates:
         joints: number of moving joints of each agent.
         unlocked: which of the object's six coordinates may move; those whose range is one value stay there.
         locked_pose: (6,) that value, 0 for the others.
+        turning: which agents transmit moments.
     """
 
     joints: tuple[int, ...]
     unlocked: npt.NDArray[np.int64]
     locked_pose: Array
+    turning: tuple[int, ...]
 
     @staticmethod
     def of(agents: tuple[Agent, ...], task: LiftTask) -> Coordinates:
         """Read off who moves what."""
         locked = task.pose_lower == task.pose_upper
         return Coordinates(
-            tuple(len(agent.posture) for agent in agents), np.flatnonzero(~locked), np.where(locked, task.pose_lower, 0)
+            tuple(len(agent.posture) for agent in agents),
+            np.flatnonzero(~locked),
+            np.where(locked, task.pose_lower, 0),
+            tuple(i for i, agent in enumerate(agents) if agent.grasp.moments),
         )
 
     @property
@@ -58,6 +65,16 @@ class Coordinates:
         """Number of components of the grasp forces."""
         return FORCE_SIZE * len(self.joints)
 
+    @property
+    def n_moment(self) -> int:
+        """Number of components of the grasp moments."""
+        return FORCE_SIZE * len(self.turning)
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Numbers of unknowns of one point: coordinates, rates, accelerations, forces, moments and torques."""
+        return (self.n_q, self.n_q, self.n_q, self.n_force, self.n_moment, self.n_joints)
+
     def select(self, columns: Array, pose: Array) -> Array:
         """Return (K, n_q) coordinates from the joints' (K, n_joints) and the object's six (K, 6)."""
         return np.hstack([columns, pose[:, self.unlocked]])
@@ -65,7 +82,7 @@ class Coordinates:
 
 @dataclass(frozen=True)
 class Instant:
-    """Functions of y = (q, v, a, f, tau) at one instant: coordinates, rates, grasp forces, joint torques.
+    """Functions of y = (q, v, a, f, m, tau) at one instant: coordinates, rates, grasp forces, moments, joint torques.
 
     Attributes:
         coordinates: what moves.
@@ -74,6 +91,7 @@ class Instant:
             grasps give [N, Nm].
         closure: q -> (3 agents,) each agent's grasp point less the object's [m].
         grasp: y -> (agents,) squared norms of the grasp forces [N^2].
+        hold: y -> what the holds leave of their other limits, see ``room``; empty for grips at points.
         workspace: q -> (agents with a half-space,) distance of the grasp point from its border [m].
     """
 
@@ -82,40 +100,49 @@ class Instant:
     balance: Any
     closure: Any
     grasp: Any
+    hold: Any
     workspace: Any
 
 
 def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> Instant:
     """Write the equations down for agents that hold one object, in the order of its grasp frames."""
     at = Coordinates.of(agents, task)
-    q, v, a = (ca.SX.sym(name, at.n_q) for name in ("q", "v", "a"))
-    force, tau = ca.SX.sym("f", at.n_force), ca.SX.sym("tau", at.n_joints)
-    forces = ca.vertsplit(force, FORCE_SIZE)
+    q, v, a, force, moment, tau = (ca.SX.sym(*each) for each in zip("qvafmt", at.sizes, strict=True))
+    forces, moments = ca.vertsplit(force, FORCE_SIZE), [ca.SX(FORCE_SIZE, 1)] * len(agents)
+    for i, transmitted in zip(at.turning, ca.vertsplit(moment, FORCE_SIZE), strict=True):
+        moments[i] = transmitted
     ends = np.cumsum([0, *at.joints])
     own = [slice(int(first), int(last)) for first, last in pairwise(ends)]
-    needed, hands = zip(
-        *(_agent(agent, q[s], v[s], a[s], f) for agent, s, f in zip(agents, own, forces, strict=True)), strict=True
+    needed, hands, grips = zip(
+        *(_agent(agent, q[s], v[s], a[s], f, m) for agent, s, f, m in zip(agents, own, forces, moments, strict=True)),
+        strict=True,
     )
     pose = [_six(at, x[at.n_joints :], constant) for x, constant in ((q, at.locked_pose), (v, 0.0), (a, 0.0))]
-    balance, *edges = _object_equations(lifted)(*pose, force)
+    balance, attitude, *edges = _object_equations(lifted)(*pose, force, ca.vertcat(*moments))
+    left = [
+        each
+        for agent, f, m, grip in zip(agents, forces, moments, grips, strict=True)
+        for each in room(agent.grasp, f, m, grip, attitude)
+    ]
     distances = [
         ca.dot(agent.workspace.normal, hand) - agent.workspace.offset
         for agent, hand in zip(agents, hands, strict=True)
         if agent.workspace is not None
     ]
-    y = ca.vertcat(q, v, a, force, tau)
+    y = ca.vertcat(q, v, a, force, moment, tau)
     return Instant(
         at,
         ca.Function("dynamics", [y], ca.cse([tau - ca.vertcat(*needed)])),
         ca.Function("balance", [y], ca.cse([balance])),
         ca.Function("closure", [q], ca.cse([ca.vertcat(*hands) - ca.vertcat(*edges)])),
         ca.Function("grasp", [y], [ca.vertcat(*(ca.dot(f, f) for f in forces))]),
+        ca.Function("hold", [y], ca.cse([ca.vertcat(*left)])),
         ca.Function("workspace", [q], ca.cse([ca.vertcat(*distances)])),
     )
 
 
-def _agent(agent: Agent, q: Any, v: Any, a: Any, force: Any) -> tuple[Any, Any]:
-    """Return the torques (n,) that an agent needs and its grasp point (3,) in the world."""
+def _agent(agent: Agent, q: Any, v: Any, a: Any, force: Any, moment: Any) -> tuple[Any, Any, Any]:
+    """Return the torques (n,) that an agent needs, its grasp point (3,) and its grip axes (3, 3) in the world."""
     import liftopt.pinocchio_casadi as cpin
 
     reduced = agent.reduced()
@@ -125,18 +152,19 @@ def _agent(agent: Agent, q: Any, v: Any, a: Any, force: Any) -> tuple[Any, Any]:
     data = model.createData()
     cpin.forwardKinematics(model, data, q)
     placement = data.oMi[joint]
-    reaction = -ca.mtimes(placement.rotation.T, force)
+    reaction, twisting = (-ca.mtimes(placement.rotation.T, each) for each in (force, moment))
     external = cpin.StdVec_Force([cpin.Force.Zero() for _ in range(reduced.njoints)])
-    external[joint] = cpin.Force(reaction, ca.cross(lever, reaction))
+    external[joint] = cpin.Force(reaction, ca.cross(lever, reaction) + twisting)
     tau = cpin.rnea(model, model.createData(), q, v, a, external)
-    return tau, placement.translation + ca.mtimes(placement.rotation, lever)
+    grip = ca.mtimes(placement.rotation, frame.placement.rotation @ agent.grasp.R_hand_object)
+    return tau, placement.translation + ca.mtimes(placement.rotation, lever), grip
 
 
 def _object_equations(lifted: LiftedObject) -> Any:
-    """Return (pose, rates, second derivatives, forces) -> balance and each grasp point, see ``Instant``."""
+    """Return (pose, rates, second derivatives, forces, moments) -> balance, attitude and each grasp point."""
     body, gravity, m = lifted.model.inertias[1], lifted.model.gravity.linear, len(lifted.grasp_frames)
     pose, rate, second = (ca.SX.sym(name, OBJECT_SIZE) for name in ("pose", "rate", "second"))
-    force = ca.SX.sym("force", FORCE_SIZE * m)
+    force, moment = (ca.SX.sym(name, FORCE_SIZE * m) for name in ("force", "moment"))
     turn = _turn_x(pose[3]) @ _turn_y(pose[4]) @ _turn_z(pose[5])
     spin = turn.T @ ca.reshape(ca.jtimes(ca.vec(turn), pose, rate), 3, 3)
     omega = ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0])
@@ -147,11 +175,11 @@ def _object_equations(lifted: LiftedObject) -> Any:
     ]
     newton = body.mass * (second[:3] - gravity)
     euler = inertia @ alpha + ca.cross(omega, inertia @ omega)
-    for lever, grip in zip(levers, ca.vertsplit(force, FORCE_SIZE), strict=True):
-        newton -= grip
-        euler -= ca.cross(lever, turn.T @ grip)
+    for lever, push, twist in zip(levers, *(ca.vertsplit(each, FORCE_SIZE) for each in (force, moment)), strict=True):
+        newton -= push
+        euler -= ca.cross(lever, turn.T @ push) + turn.T @ twist
     points = [pose[:3] + turn @ lever for lever in levers]
-    return ca.Function("object", [pose, rate, second, force], [ca.vertcat(newton, euler), *points])
+    return ca.Function("object", [pose, rate, second, force, moment], [ca.vertcat(newton, euler), turn, *points])
 
 
 def _six(at: Coordinates, unlocked: Any, constant: Any) -> Any:

@@ -9,17 +9,20 @@ import casadi as ca
 import numpy as np
 
 from liftopt.collocation.task import TILT, LiftTask
-from liftopt.crosscheck.instant import Coordinates
+from liftopt.crosscheck.instant import FORCE_SIZE, Coordinates
 from liftopt.multibody.agent import Agent, Comfort
 
 ROLL, PITCH = 3, 4
 
 
 def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: Any) -> Any:
-    """Return what the objective integrates (1, K) at points (n_y, K): q, v, a, grasp forces and torques below each."""
-    sizes = [at.n_q, at.n_q, at.n_q, at.n_force, at.n_joints]
-    q, _, a, force, tau = ca.vertsplit(points, np.cumsum([0, *sizes]).tolist())
+    """Return what the objective integrates (1, K) at points (n_y, K), unknowns as in ``Coordinates.sizes``."""
+    q, _, a, force, moment, tau = ca.vertsplit(points, np.cumsum([0, *at.sizes]).tolist())
     total = task.acceleration_weight * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
+    # A moment takes a pair of contact forces, the hand's breadth apart.
+    twists: Any = ca.vertsplit(moment, FORCE_SIZE)
+    for i, twist in zip(at.turning, twists, strict=True):
+        total += task.force_weight / agents[i].grasp.breadth ** 2 * ca.sum1(twist**2)
     first = 0
     for agent, weight, n in zip(agents, task.agent_weights, at.joints, strict=True):
         own, limits = slice(first, first + n), agent.limits

@@ -3,11 +3,12 @@
 The grasps are equality constraints between the grasp points (``connect``), so MuJoCo finds the grasp forces itself;
 contacts are off, the virtual joints are welded. Joints get the torques of the solution, between the knots too; three
 hinges through one point are one ball joint and get the moment that these are components of (``mujoco_balls.py``).
+Moments that grasps transmit act on hand and object as they were solved, along world axes.
 
-Two point grasps cannot hold the object about the line through them: the optimal-control problem locks that turn and
-reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
+Two grasps at points cannot hold the object about the line through them: the optimal-control problem locks that turn
+and reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
 
-Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the default lift: the
+Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the paper's lift: the
 object's centre lies above the line of the grasps, and arms that push each other through points buckle at wrist and
 forearm, where there is little inertia. So a feedback holds joints and object to the solution, ``M (w^2 e + 2 w de/dt)``
 with the inertia matrix M of the moment; what it adds to the solved torques is reported.
@@ -34,7 +35,7 @@ SETTLING = 0.02  # time constant with which the constraints close a gap of the g
 HARDNESS = 0.9999  # of the constraints: the most MuJoCo allows, so its grasp forces are good to some 1e-3
 WINDOW = 0.05  # [s]
 LOST = 1.0  # [rad, m]: a simulation that is this far off is stopped
-# Of the feedback [rad/s]. Deviations grow as exp(49 t) at worst on the default lift and exp(114 t) on a lift with the
+# Of the feedback [rad/s]. Deviations grow as exp(49 t) at worst on the paper's lift and exp(114 t) on a lift with the
 # arm nearly straight, where humeral rotation meets hardly any inertia (eigenvalues of the linearised simulation).
 BANDWIDTH = 160.0
 
@@ -171,6 +172,15 @@ class Simulation:
         return states
 
     @cached_property
+    def _moments(self) -> Array:
+        """What grasps transmit to every body (K, bodies, 3), world axes [Nm]."""
+        moments = np.zeros((len(self._dense.time), self._model.nbody, 3))
+        for agent in self._dense.agents:
+            moments[:, self._model.body(f"grasp_{agent.name}").id] = agent.grasp_moment
+            moments[:, self._model.body(f"{agent.name}_grasp").id] = -agent.grasp_moment
+        return moments
+
+    @cached_property
     def _places(self) -> dict[str, tuple[int, slice]]:
         """Where each joint but the object's stands in qpos, and in qvel."""
         model, balls = self._model, {ball.hinges[-1] for ball in self._balls}
@@ -210,7 +220,7 @@ class Simulation:
         mujoco, data = import_mujoco(), self._data
         mujoco.mj_resetData(self._model, data)
         data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
-        data.qfrc_applied[:] = self._states.tau[k]
+        data.qfrc_applied[:], data.xfrc_applied[:, 3:] = self._states.tau[k], self._moments[k]
         data.qfrc_applied[self._roll] = self._dense.object.wrench[k, 3] * serve
         mujoco.mj_forward(self._model, data)
         # A constraint's force acts on its first body along world axes: on the agent, from the object.
@@ -235,6 +245,7 @@ class Simulation:
     def _advance(self, k: int, force: Array) -> Array:
         """Go from time ``k`` to the next; return the deviations there, those of ``Deviation``."""
         self._data.qfrc_applied[:] = force
+        self._data.xfrc_applied[:, 3:] = self._moments[k : k + 2].mean(axis=0)
         import_mujoco().mj_step(self._model, self._data)
         error, at = self._error(k + 1), self._body
         joints, position, turn = error[self._joints], error[at : at + 3], error[at + 3 : at + 6]

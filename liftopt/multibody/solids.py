@@ -5,7 +5,7 @@ A solid is the hull of a few points, made thicker all around by a radius: two po
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Literal
 from xml.etree import ElementTree
@@ -42,7 +42,7 @@ class Solid:
     owner: str
     name: str
     joint: int
-    T_joint_solid: Array
+    T_joint_solid: Array = field(repr=False)
     kind: SolidKind
     size: tuple[float, ...]
 

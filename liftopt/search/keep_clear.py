@@ -75,7 +75,9 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
             session.blocked = []
             return [*candidates[:n], attempt.candidate, *candidates[n + 1 :]]
         session.blocked.append(attempt)
-    return list(candidates)
+    failed = session.blocked[:PASSED]
+    found = _passing(session, clearer, failed) or _other_sides(clearer, failed)
+    return [*found, *candidates]
 
 
 def _passing(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -112,11 +113,16 @@ class Clearer:
     deadline: Deadline
     solver: Callable[[Problem], Solver]
 
+    @cached_property
+    def asked(self) -> Array:
+        """(P,) least distance of each pair [m]."""
+        return np.array([pair.asked(self.clearance) for pair in self.solids.pairs])
+
     def look(self, problem: Problem, spline: RestToRestSpline, x: Array) -> tuple[SolidDistances, Array]:
         """Return distances at the knots, and the least of each pair (P,) at any time, as far as they may matter [m]."""
         control = problem.unpack(x)[0]
         knots = solid_distances(self.solids, problem, problem.mesh.basis[0] @ control, NEAR)
-        passing = np.flatnonzero(knots.distance.min(axis=0) < self.clearance + PASSING)
+        passing = np.flatnonzero(knots.distance.min(axis=0) < self.asked + PASSING)
         phase = np.linspace(0.0, 1.0, FINER * spline.intervals + 1)
         between = solid_distances(
             self.solids, problem, spline.basis(phase) @ control, self.clearance + WATCHED, passing
@@ -125,7 +131,7 @@ class Clearer:
 
     def is_clear(self, least: Array) -> bool:
         """Whether all pairs are as far apart as the scenario asks, given the least distance of each (P,)."""
-        return bool(least.min(initial=np.inf) >= self.clearance - CLEAR)
+        return bool((least - self.asked).min(initial=np.inf) >= -CLEAR)
 
     def make_clear(
         self,
@@ -148,7 +154,7 @@ class Clearer:
         for turn in range(ROUNDS + 1):
             knots, least = self.look(now.problem, now.spline, now.result.x)
             if turn == 0:
-                deep = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
+                deep = frozenset(np.flatnonzero(least < self.asked - CLEAR).tolist())
             if self.is_clear(least) and now.result.converged:
                 before, clear = clear, now
                 objective = now.result.objective
@@ -159,8 +165,8 @@ class Clearer:
                     break
             elif clear or turn == ROUNDS:
                 break
-            watched = np.union1d(watched, np.flatnonzero(least < self.clearance + WATCHED))
-            crossing = frozenset(np.flatnonzero(least < self.clearance - CLEAR).tolist())
+            watched = np.union1d(watched, np.flatnonzero(least < self.asked + WATCHED))
+            crossing = frozenset(np.flatnonzero(least < self.asked - CLEAR).tolist())
             times = knot_times(now.problem)
             now = self._solved(
                 now, knots, watched, PlaneOptions(self.clearance + MARGIN, MARGIN, times, crossing, avoided)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liftopt.collocation.separating_planes import WORLD, Body, SeparatingPlanes, Separation
+from liftopt.multibody.solid_pairs import SolidPair
 from liftopt.search.solid_distances import SolidDistances, gaps
 from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Array
@@ -57,6 +58,10 @@ class PlaneOptions:
     time: Array | None = None
     crossing: frozenset[int] = frozenset()
     avoided: frozenset[int] = frozenset()
+
+    def of(self, pair: SolidPair) -> float:
+        """Return the least distance of a pair [m]: parts of one body may touch, but for the margin."""
+        return self.margin if pair.within_body else self.distance
 
 
 @dataclass(frozen=True)
@@ -153,9 +158,11 @@ def _shared(solids: TeamSolids, found: SolidDistances, p: int, k: int, normals: 
 
 
 def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: Array) -> list[int]:
-    """Return the corners of a hull that lie nearest against the normal."""
+    """Return the corners of a hull that lie nearest against the normal; of what stands, one is always the nearest."""
     count = len(solids.solids[s].points)
     along = found.points[k, s, :count] @ normal
+    if solids.bodies[s].part == WORLD:
+        return [int(along.argmin())]
     reach = np.inf if solids.solids[s].kind == "capsule" else FARTHER
     return [int(i) for i in np.flatnonzero(along <= along.min() + reach)]
 
@@ -165,6 +172,7 @@ def _normals(
 ) -> Array:
     """Return a unit normal (K, 3) of a pair at every knot; those who hold the object pass ``beside`` as it does."""
     distance, exact = found.distance[:, p], found.normal[:, p]
+    asked = options.of(solids.pairs[p])
     other = solids.ends[p, 1]
     if solids.flat[other]:
         return np.tile([0.0, 0.0, 1.0], (len(distance), 1))
@@ -178,7 +186,7 @@ def _normals(
     # Where solids are apart the direction between their nearest points is a candidate too, and the best.
     directions = np.concatenate([directions, np.where(apart[:, None], exact, directions[:, 0])[:, None]], axis=1)
     gap = np.concatenate([gap, np.where(apart, distance, -np.inf)[:, None]], axis=1)
-    cost = (np.minimum(gap - options.distance, 0.0) / DEPTH) ** 2 * (20.0 / max(1, len(distance) - 1))
+    cost = (np.minimum(gap - asked, 0.0) / DEPTH) ** 2 * (20.0 / max(1, len(distance) - 1))
     if _is_placed(solids, p):
         cost[[0, -1]] *= FIXED
     cost = np.minimum(cost, 1e6)
@@ -189,7 +197,7 @@ def _normals(
         chosen = directions[np.arange(len(first)), first]
         # What lies between the directions of both ends is the side on which it passed; else it is where it overlapped.
         between = (chosen @ chosen[[0, -1]].T < SAME_SIDE).all(axis=1)
-        passed = chosen[between] if between.any() else chosen[distance < options.distance]
+        passed = chosen[between] if between.any() else chosen[distance < asked]
         alike = (np.einsum("kda,ca->kdc", directions, passed) > SAME_SIDE).any(axis=2)
         first = _cheapest(cost + THROUGH * alike, directions)
     return directions[np.arange(len(first)), first]
@@ -205,7 +213,7 @@ def _wanted(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOpt
 
     What the object rests on at an end it leaves little by little; the margin counts from there on.
     """
-    wanted = np.full(len(found.distance), options.distance)
+    wanted = np.full(len(found.distance), options.of(solids.pairs[p]))
     if options.time is not None and _is_placed(solids, p):
         since = options.time - options.time[0], options.time[-1] - options.time
         for end, passed in zip((0, -1), since, strict=True):

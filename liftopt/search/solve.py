@@ -1,7 +1,8 @@
 """The main job, a scenario in and a verified optimal lift out, told on one page.
 
 1. Postures at both ends of the lift give initial guesses (``initial_guesses``).
-2. Many of them are solved on a coarse mesh, and the best optima are varied (``coarse_search``).
+2. Many of them are solved on a coarse mesh, and the best optima are varied (``coarse_search``). Where bodies overlap in
+   them they are kept apart (``keep_clear``); where that cannot be done, ``explain_blocked`` says which are in the way.
 3. The best of these are taken to the mesh that was asked for and verified there (``refine_mesh``).
 4. If nothing is verified, a few guesses are solved on that mesh itself (``solve_starts``), then many more on the coarse
    one (``search_wider``).
@@ -98,9 +99,17 @@ def search_wider(session: Session) -> Found | None:
     tries, seed = WIDER * session.scenario.solver.tries, session.scenario.solver.seed + 1
     if not tries or session.deadline.passed:
         return None
-    guesses = _guesses(session, session.problem(session.spline), tries, seed, tries)
-    optima = coarse_search(session, session.spline, guesses, tries, LEAN) if guesses else []
-    return refine_mesh(session, optima, session.spline.intervals) if optima else None
+    problem, blocked = session.problem(session.spline), bool(session.blocked)
+    guesses = _guesses(session, problem, tries, seed, tries)
+    if guesses is None:
+        return None
+    optima = coarse_search(session, session.spline, guesses, tries, LEAN)
+    if optima:
+        return refine_mesh(session, optima, session.spline.intervals)
+    if blocked and not session.blocked:  # there is no coarser mesh; other postures may be clear
+        found = solve_starts(session, session.spline, guesses.starts(problem, tries))
+        return found if found.best.usable else None
+    return None
 
 
 def _guesses(session: Session, problem: Problem, most: int, seed: int, tries: int) -> InitialGuessSet | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -43,10 +43,10 @@ class KindClearance:
     """
 
     kind: str
-    distance: Array
-    pair: npt.NDArray[np.int64]
-    points: Array
-    speed: Array
+    distance: Array = field(repr=False)
+    pair: npt.NDArray[np.int64] = field(repr=False)
+    points: Array = field(repr=False)
+    speed: Array = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,8 @@ class Clearance:
             first.
     """
 
-    time: Array
-    pairs: tuple[SolidPair, ...]
+    time: Array = field(repr=False)
+    pairs: tuple[SolidPair, ...] = field(repr=False)
     kinds: tuple[KindClearance, ...]
     closest: tuple[PairClearance, ...]
 

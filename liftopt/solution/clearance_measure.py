@@ -146,7 +146,7 @@ def _closest(
         return
     order = order[np.lexsort((lower[order], pair[order]))]
     rows, starts = np.unique(pair[order], return_index=True)
-    for row, own in zip(rows.tolist(), np.split(order, starts[1:]), strict=True):
+    for row, own in zip(rows.tolist(), np.split(order, starts[1:])[: len(rows)], strict=True):
         best, at = np.inf, 0
         for moment, bound in zip(k[own].tolist(), lower[own].tolist(), strict=True):
             if bound >= best:

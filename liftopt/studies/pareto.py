@@ -22,11 +22,12 @@ from liftopt.errors import InputError
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import lead, partner
+from liftopt.scenario.presets import defaults_at
 from liftopt.search.candidate import Candidate
 from liftopt.solution.grasp_loads import shares
 from liftopt.types import Progress
 
-DECADES = 4.0  # that the ratio of the weights runs over
+DECADES = 4.0  # that the ratio of the weights runs over, about that of the preset
 # Where a warm solve across a step in weights fails, it is tried in two halves, this often.
 HALVINGS = 2
 ROUNDS = 3  # over the whole range and back, at most
@@ -78,6 +79,8 @@ def pareto_front(
 ) -> Front:
     """Return the front of a scenario from ``count`` ratios of the weights, evenly spaced in their logarithm.
 
+    The ratios run from a hundred times that of the preset, 1 : 1 for the paper's, to a hundredth of it.
+
     Args:
         scenario: whose.
         count: of ratios.
@@ -95,7 +98,8 @@ def pareto_front(
     total = scenario.agents[one].weight + scenario.agents[other].weight
     if total == 0:
         raise InputError(f"{one}.weight", 0.0, f"one of {one}.weight and {other}.weight must be above 0")
-    logs = np.linspace(DECADES / 2, -DECADES / 2, count).tolist()  # of one over the other
+    middle = _usual(scenario, one) - _usual(scenario, other)
+    logs = np.linspace(middle + DECADES / 2, middle - DECADES / 2, count).tolist()  # of one over the other
     walk = _Walk(scenario, pair, total, logs, Replanner(progress), progress or (lambda line: None))
     candidates = walk.best()
     points = [_point(candidate, pair) for candidate in candidates if candidate is not None and candidate.solved]
@@ -109,6 +113,12 @@ def weights_at(total: float, log: float) -> tuple[float, float]:
     """Return the weights of the two whose ratio has this logarithm to base 10."""
     one = total / (1 + 10**-log)
     return one, total - one
+
+
+def _usual(scenario: Scenario, name: str) -> float:
+    """Return the logarithm to base 10 of the weight that an agent has by the preset."""
+    weights: dict[str, float] = defaults_at(f"{scenario.agents[name].kind}.weight")
+    return math.log10(weights[scenario.objective.preset])
 
 
 def _pair(scenario: Scenario, between: Sequence[str] | None) -> tuple[str, str]:
@@ -233,7 +243,8 @@ def ratio_text(weights: tuple[float, float]) -> str:
     one, other = weights
     if not one or not other:
         return "1 : 0" if one else "0 : 1"
-    return f"{one / other:.3g} : 1" if one >= other else f"1 : {other / one:.3g}"
+    ratio = float(f"{max(one, other) / min(one, other):.3g}")
+    return f"{ratio:g} : 1" if one >= other else f"1 : {ratio:g}"
 
 
 def who_of(front: Front, name: str) -> Who:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pinocchio as pin
 from matplotlib.figure import Figure
 
-from liftopt.ergonomics.lift import model_of
-from liftopt.ergonomics.posture import WRIST, posture_of
+from liftopt.ergonomics.motion import Motion, motion_of
 from liftopt.ergonomics.recorded_lifts import HEIGHTS, RECORDED
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, LIMIT, LINES, panels
@@ -28,7 +24,8 @@ def recorded_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
 
     The height of the wrist runs along x; a lift begins at the filled mark. Where nothing was recorded there is no band.
     """
-    height, angles = _wrist_height(lift.dense, agent), compared_angles(lift.dense, agent)
+    motion = motion_of(lift.dense, agent)
+    height, angles = motion.wrist_height, compared_angles(motion)
     figure, grid = panels(2, 2, height=1.7)
     line = LINES[0]
     for index, (name, title) in enumerate(TITLES.items()):
@@ -50,24 +47,11 @@ def recorded_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
     return figure
 
 
-def compared_angles(solution: Solution, person: AgentTrajectory) -> dict[str, Array]:
+def compared_angles(motion: Motion) -> dict[str, Array]:
     """Return a person's angles (K,) as the recordings count them, by the names of ``RECORDED`` [deg]."""
-    posture = posture_of(solution, person)
-    flexion, out = np.radians(posture.upper_arm_flexion), np.radians(posture.upper_arm_out)
     return {
-        "elbow": posture.elbow_flexion,
-        "humeral_elevation": np.degrees(np.arccos(np.clip(np.cos(flexion) * np.cos(out), -1.0, 1.0))),
-        "wrist_extension": -posture.wrist_flexion,
-        "twist": posture.trunk_turn,
+        "elbow": motion.elbow,
+        "humeral_elevation": motion.humeral_elevation,
+        "wrist_extension": -motion.wrist_flexion,
+        "twist": motion.twist,
     }
-
-
-def _wrist_height(solution: Solution, person: AgentTrajectory) -> Array:
-    """Return the height of the wrist above the floor (K,) [m]."""
-    model = model_of(solution, person.name).model
-    data, frame = model.createData(), model.getFrameId(f"{person.name}_{WRIST}_link")
-    height = np.zeros(len(person.q))
-    for k, q in enumerate(person.q):
-        pin.framesForwardKinematics(model, data, q)
-        height[k] = data.oMf[frame].translation[2]
-    return height

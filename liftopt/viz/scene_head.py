@@ -46,18 +46,19 @@ def head_parts(subject: Subject, body: str, skin: Colour) -> list[Part]:
 
     nose = capsule(face(0.47, 0.97), face(0.33, 1.10), 0.007, 0.012)
     ears = [ball(face(0.44, -0.02, side * 0.99), (0.017, 0.008, 0.031)) for side in (-1.0, 1.0)]
-    eyes = [ball(face(0.50, 0.90, side * 0.40), (0.009, 0.013, 0.007)) for side in (-1.0, 1.0)]
+    eyes = [ball(face(0.50, 0.86, side * 0.40), (0.009, 0.013, 0.007)) for side in (-1.0, 1.0)]
     brows = [capsule(face(0.57, 0.93, s * 0.22), face(0.575, 0.84, s * 0.60), 0.0040, 0.0030) for s in (-1.0, 1.0)]
-    mouth = capsule(face(0.20, 0.87, -0.22), face(0.20, 0.87, 0.22), 0.005)
+    mouth = capsule(face(0.20, 0.80, -0.20), face(0.20, 0.80, 0.20), 0.005)
     longer = 0.10 if subject.sex == "female" else 0.34
     # A cap that leans back: its front edge is the hair line, everywhere else it lies outside the skull.
     hair = [
         ring(longer, 0.94, 0.62, -0.040),
         ring(0.50, 1.06, 0.80, -0.026),
         ring(0.66, 1.09, 0.90, -0.018),
-        ring(0.76, 1.07, 0.99, -0.012),
-        ring(0.85, 0.98, 1.01, -0.006),
-        ring(0.96, 0.66, 0.70, -0.007),
+        ring(0.76, 1.07, 0.99, -0.014),
+        ring(0.84, 1.00, 1.04, -0.010),
+        ring(0.91, 0.88, 0.94, -0.008),
+        ring(0.97, 0.62, 0.70, -0.007),
     ]
     return [
         Part(body, "neck", skin, tube(throat, TO_SIDE)),

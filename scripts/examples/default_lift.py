@@ -6,9 +6,6 @@ A man of 1.75 m and a Sawyer robot raise a table of 2 kg from 0.9 to 1.4 m in tw
 what do the joints of the person do?
 """
 
-import tempfile
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -23,12 +20,7 @@ for finding in solution.assessment:
 # %%
 # ``picture`` draws everybody at one moment or several, here at the start, in the middle and at the end.
 
-file = Path(tempfile.mkdtemp()) / "lift.png"
-solution.picture(file)
-figure = plt.figure(figsize=(9.3, 2.8))
-figure.add_axes((0.0, 0.0, 1.0, 1.0)).imshow(plt.imread(file))
-plt.axis("off")
-plt.show()
+solution.picture("lift.png")
 
 # %%
 # ``to_xarray`` gives all curves with their names and units, the same as in ``solution.nc``.

@@ -3,7 +3,7 @@ Person against robot
 ====================
 
 What does the person gain where the robot works more? The lift is solved for several ratios of the two weights; what no
-other compromise beats in both efforts is the front.
+other compromise beats in both efforts is the front. Effort is the integral of squared shares of the joints' limits.
 """
 
 import matplotlib.pyplot as plt
@@ -17,5 +17,5 @@ for point in front.points:
 
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
 axes.loglog(*zip(*(point.efforts for point in front.points), strict=True), "o-")
-axes.set(xlabel="effort of the person [N²m²s]", ylabel="effort of the robot [N²m²s]")
+axes.set(xlabel="effort of the person [s]", ylabel="effort of the robot [s]")
 plt.show()

@@ -27,6 +27,7 @@ solution = lo.solve(pair)
 print(solution.status)
 for person in solution.persons:
     print(person.name, f"{person.grasp_force[:, 2].mean():.1f} N upwards on average")
+solution.picture("box.png")
 
 # %%
 # The weights say whose effort counts: ten times the weight on Anna's torques.

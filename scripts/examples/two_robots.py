@@ -33,6 +33,7 @@ team = lo.Scenario(
 )
 solution = lo.solve(team)
 print(solution.status)
+solution.picture("board.png")
 
 # %%
 # Three points that are not on a line hold the board in all six directions, so it may roll.

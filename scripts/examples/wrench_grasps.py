@@ -12,8 +12,8 @@ import liftopt as lo
 
 wrench = {"human.grasp": "wrench", "robot.grasp": "wrench"}
 solutions = {
-    "point": lo.solve(lo.load_scenario("table5")),
-    "wrench": lo.solve(lo.load_scenario("table5", wrench)),
+    "point": lo.solve(lo.load_scenario("table5_paper")),
+    "wrench": lo.solve(lo.load_scenario("table5_paper", wrench)),
 }
 
 figure, (force, moment) = plt.subplots(2, 1, figsize=(7, 5), sharex=True, layout="constrained")

@@ -114,7 +114,9 @@ def test_crosscheck_imports_nothing_of_the_solve() -> None:
     judges = {
         "energy.py": (*result, "liftopt.multibody.trajectory"),
         "hermite_simpson.py": ("casadi", "functools", "time", "liftopt.collocation.task"),
+        "holds.py": ("casadi",),
         "instant.py": ("casadi", "itertools", "liftopt.collocation.task", "liftopt.pinocchio_casadi"),
+        "integrand.py": ("casadi", "liftopt.collocation.task"),
         "motion_report.py": result,
         "mujoco_balls.py": (*result, "liftopt.multibody.trajectory"),
         "mujoco_dynamics.py": result,

@@ -77,7 +77,7 @@ def test_limits_and_weights_are_passed_on_in_the_tasks_units() -> None:
         "limits.balance_tolerance=0.5", "human.weight=2", "robot.weight=3",
         "objective.acceleration_weight=4", "objective.force_weight=5", "duration=3",
     ]  # fmt: skip
-    task = task_of(load_scenario("table5", entries))
+    task = task_of(load_scenario("table5_paper", entries))
     np.testing.assert_allclose(task.pose_upper[3:], np.radians([0.0, 12.0, 7.0]))
     np.testing.assert_allclose(task.pose_lower[3:], -task.pose_upper[3:])
     assert task.pose_lower[2] == 0.0

@@ -13,7 +13,6 @@ from liftopt.scenario.agents import Person, Pose, Robot, Tool
 from liftopt.scenario.box import Box
 from liftopt.scenario.keys import changes_in
 from liftopt.scenario.model import Scenario, load_scenario
-from liftopt.scenario.settings import Objective
 from liftopt.scenario.task import Lift
 
 DEFAULT = load_scenario()
@@ -76,7 +75,6 @@ def test_a_scenario_is_made_in_python_as_in_a_file() -> None:
             start={"height": 0.9, "human_distance": 0.4},
             end={"height": 1.4, "human_distance": 0.4},
         ),
-        objective=Objective(preset="paper"),
     )
     assert made == DEFAULT
     assert pickle.loads(pickle.dumps(made)) == DEFAULT

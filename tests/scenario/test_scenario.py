@@ -19,6 +19,7 @@ from liftopt.scenario.agents import Person
 from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.listing import DEFAULT_TEAM, describe, fields_of
 from liftopt.scenario.model import Scenario, load_scenario, scenario_from_dict
+from liftopt.scenario.presets import NATURAL
 
 DEFAULT = load_scenario()
 
@@ -39,12 +40,10 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
                 "stature": 1.75,
                 "mass": 75.0,
                 "sex": "male",
-                "grasp": "point",
                 "max_grasp_moment": 10.0,
-                "grasp_turn_deg": 30.0,
                 "contact": "grip",
                 "friction": 0.5,
-                "weight": 1.0,
+                **NATURAL["person"],
             },
             "robot": {
                 "kind": "robot",
@@ -52,10 +51,9 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
                 "base_height": 0.915,
                 "base": {"y": 0.0, "yaw_deg": 180.0},
                 "tool": {"length": 0.15, "mass": 0.4},
-                "grasp": "point",
                 "max_grasp_moment": 5.0,
                 "grasp_turn_deg": 30.0,
-                "weight": 1.0,
+                **NATURAL["robot"],
             },
         },
         "object": {"name": "table", "mass": 2.0, "depth": 0.45, "width": 0.31, "height": 0.02},
@@ -65,13 +63,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "start": {"height": 0.9, "human_distance": 0.40, "pitch_deg": 0.0},
             "end": {"height": 1.4, "human_distance": 0.40, "pitch_deg": 0.0},
         },
-        "objective": {
-            "preset": "paper",
-            "acceleration_weight": 0.5,
-            "force_weight": 0.01,
-            "range_weight": 0.0,
-            "tilt_weight": 0.0,
-        },
+        "objective": {"preset": "natural", **NATURAL["objective"]},
         "limits": {
             "table_roll_deg": 10.0,
             "table_pitch_deg": 10.0,
@@ -108,9 +100,8 @@ def test_shipped_scenarios_differ_in_the_reading_of_table_5_and_in_the_objective
 
 def _required_only() -> dict[str, Any]:
     data = DEFAULT.to_dict()
-    for section in ("limits", "solver", "refine", "name"):
+    for section in ("objective", "limits", "solver", "refine", "name"):
         del data[section]
-    data["objective"] = {"preset": "paper"}
     for agent in data["agents"].values():
         del agent["weight"], agent["grasp"], agent["grasp_turn_deg"]
     del data["agents"]["robot"]["base_height"], data["agents"]["robot"]["tool"], data["agents"]["robot"]["base"]

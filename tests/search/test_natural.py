@@ -14,12 +14,12 @@ from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.storage.reader import load_result
 
-NATURAL = ("table5", "objective.preset=natural", "solver.intervals=12")
+NATURAL = ("table5", "solver.intervals=12")
 
 
 @pytest.fixture(scope="module")
 def natural(solved: Callable[..., Any]) -> Solution:
-    """Return Table 5 with the preset natural."""
+    """Return the default lift, which is natural, on a coarse mesh."""
     solution: Solution = solved(*NATURAL).solution
     return solution
 
@@ -65,7 +65,7 @@ def test_the_person_holds_more_naturally_than_with_the_papers_weights(
     natural: Solution, solved: Callable[..., Any]
 ) -> None:
     """The cost of joint angles, in the mean over time."""
-    paper = solved("table5", "solver.intervals=12").solution
+    paper = solved("table5_paper", "solver.intervals=12").solution
     comfort = agents_of(natural.scenario)[0].comfort
     assert comfort is not None
     costs = [comfort.cost(one["human"].q[:, one["human"].moving]).mean() for one in (natural, paper)]

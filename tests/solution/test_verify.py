@@ -49,7 +49,7 @@ class Solve:
 
 @pytest.fixture(scope="module")
 def solve() -> Solve:
-    scenario, spline = load_scenario("table5"), RestToRestSpline(N)
+    scenario, spline = load_scenario("table5_paper"), RestToRestSpline(N)
     team = Team.of(agents_of(scenario), object_of(scenario))
     problem = Problem(team, task_of(scenario), spline.mesh())
     deadline = NEVER

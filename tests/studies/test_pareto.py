@@ -83,6 +83,25 @@ def test_all_points_stand_on_one_mesh_where_one_takes_a_finer_one() -> None:
     assert solve(coarse).intervals in (16, 32)
 
 
+def test_a_natural_front_is_about_its_presets_ratio_and_counts_shares() -> None:
+    """Efforts by the definition: torque over the limit in its direction, squared, by the trapezoid rule."""
+    natural = load_scenario("table5_near", ["solver.starts=1", "solver.tries=0", "solver.intervals=12"])
+    found = pareto_front(natural, 3)
+    assert len(found.points) + len(found.dominated) == 3
+    usual = natural.value("human.weight") / natural.value("robot.weight")
+    ratios = sorted(point.weights[0] / point.weights[1] for point in found.points + found.dominated)
+    assert ratios == pytest.approx([usual / 100, usual, usual * 100], rel=1e-9)
+    for point in found.points:
+        solution = point.candidate.solution([], {"setup": 0.0, "total": 0.0})
+        for agent, effort in zip(solution.agents, point.efforts, strict=True):
+            tau, limits = agent.tau[:, agent.moving], agent.limits
+            share = np.where(tau > 0, tau / limits.tau_upper, tau / limits.tau_lower)
+            assert effort == pytest.approx(np.trapezoid((share**2).sum(axis=1), solution.time), rel=1e-9)
+    row = front_dict(found)["points"][0]
+    assert {"human_effort_s", "robot_effort_s"} <= set(row)
+    assert "shares of strength" in " ".join(table(found, front_dict(found)).split())
+
+
 def test_weights_keep_their_sum_and_ratio() -> None:
     human, robot = weights_at(3.0, 1.0)
     assert human + robot == pytest.approx(3.0)

@@ -12,7 +12,7 @@ from liftopt.multibody.agent import Agent
 from liftopt.multibody.solids import Solid, solids_of
 from liftopt.scenario.build import agents_of, subject_of
 from liftopt.scenario.model import load_scenario
-from liftopt.viz.scene_person import person_parts
+from liftopt.viz.scene_person import FREE_ARM, person_parts
 from liftopt.viz.scene_sawyer import sawyer_parts
 
 SCENARIO = load_scenario()
@@ -26,7 +26,9 @@ def _outside(part: Any, agent: Agent, coal_distance: ModuleType) -> float:
     """Return how far a part of a figure sticks out of the solids on its joint, at the zero pose [m]."""
     places = coal_distance.joint_placements(agent, np.zeros(len(agent.moving_joints)))
     names = list(agent.reduced().names)
-    joint = names.index(part.body) if part.body in names else 0
+    # The free arm is drawn hanging from the trunk, of which it is a rigid part in the model.
+    body = part.body.replace(FREE_ARM, "Q3")
+    joint = names.index(body) if body in names else 0
     gaps = [_gap(solid, places[joint], part.mesh.vertices) for solid in solids_of(agent) if solid.joint == joint]
     return float(np.min(gaps, axis=0).max())
 

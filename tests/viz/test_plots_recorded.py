@@ -11,6 +11,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from liftopt.ergonomics.motion import motion_of
 from liftopt.ergonomics.recorded_lifts import HEIGHTS, LIFTS, RECORDED, SMALLEST
 from liftopt.scenario.build import agents_of
 from liftopt.viz.plots import drawn, plots_of
@@ -59,7 +60,7 @@ def test_angles_are_those_between_pinocchios_joints(lift: Lift) -> None:
     shoulder, elbow, wrist, trunk = (names.index(f"human_{row}") for row in ("Q5", "Q7", "Q9", "Q3"))
     pin.forwardKinematics(model, data, pin.neutral(model))
     hanging = data.oMi[trunk].rotation.T @ [0.0, 0.0, -1.0]
-    found = compared_angles(solution, solution["human"])
+    found = compared_angles(motion_of(solution, solution["human"]))
     for k in range(0, len(solution.time), 17):
         pin.forwardKinematics(model, data, solution["human"].q[k])
         at = [data.oMi[joint].translation for joint in (shoulder, elbow, wrist)]
@@ -81,7 +82,7 @@ def test_the_plot_shows_them_over_the_band_by_the_wrists_height(lift: Lift) -> N
     (plot,) = (plot for plot in plots_of(lift) if plot.name == "recorded_angles")
     figure = drawn(plot, lift)
     person = lift.dense["human"]
-    angles = compared_angles(lift.dense, person)
+    angles = compared_angles(motion_of(lift.dense, person))
     for name, title in TITLES.items():
         (axes,) = (axes for axes in figure.axes if axes.get_title(loc="left") == title)
         recorded, predicted = axes.lines[0], axes.lines[1]

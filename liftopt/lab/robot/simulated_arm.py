@@ -8,10 +8,10 @@ a reference that moves at the commanded velocity:
 In velocity mode this is a velocity loop. P and D are those of the position controller in the manufacturer's own
 simulator; its velocity controller (0.05 Nm s/rad at joints with 2 Nm of friction) could not move the arm. I is an
 estimate: there it is without effect (no i_clamp is given, which control_toolbox takes for 0), and the arm would end
-33 mm off under the load of the default lift. Gravity compensation knows the gripper, not the object. Everything is in
+33 mm off under the load of the paper's lift. Gravity compensation knows the gripper, not the object. Everything is in
 the signs of Table 3.
 
-How much hangs on these numbers, on the default lift: with P and D halved or doubled, I or friction left out or doubled,
+How much hangs on these numbers, on the paper's lift: with P and D halved or doubled, I or friction left out or doubled,
 or the load left out, the hand is led off by 261 to 264 mm at most in velocity mode, where the server's own law decides,
 and by 16 to 51 mm in position_w_id mode, where they do: an order of magnitude.
 """

@@ -27,7 +27,7 @@ Made = Callable[..., RecordedLift]
 
 @pytest.fixture(scope="module")
 def solution(solved: Callable[..., Any]) -> Solution:
-    return solved("table5", *CHEAP).solution
+    return solved("table5_paper", *CHEAP).solution
 
 
 def one(found: Any, group: str, name: str) -> Comparison:
@@ -199,7 +199,7 @@ def test_half_the_weight_is_on_either_carrier(
         "objective.force_weight=1.0",
         "limits.table_pitch_deg=1.0",
     ]
-    lift = solved("table5", *CHEAP, "task.rest=acceleration", *overrides).solution
+    lift = solved("table5_paper", *CHEAP, "task.rest=acceleration", *overrides).solution
     assert made.limits.table_pitch_deg == lift.scenario.limits.table_pitch_deg
     assert lift.solved
     vertical = np.stack([agent.grasp_force[[0, -1], 2] for agent in lift.agents])

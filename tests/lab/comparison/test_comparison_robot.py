@@ -32,7 +32,7 @@ RATE = 100.0
 
 @pytest.fixture(scope="module")
 def solution(solved: Callable[..., Any]) -> Solution:
-    return solved("table5", *CHEAP).solution
+    return solved("table5_paper", *CHEAP).solution
 
 
 def states(solution: Solution, late: float = 0.0, after: float = 1.0) -> tuple[Array, Array, Array]:

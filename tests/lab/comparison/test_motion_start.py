@@ -36,7 +36,7 @@ FEEDBACK_DEFINITIONS = {
 
 @pytest.fixture(scope="module", params=["velocity", "acceleration"])
 def solution(request: pytest.FixtureRequest, solved: Callable[..., Any]) -> Solution:
-    return solved("table5", "solver.intervals=10", "solver.starts=1", f"task.rest={request.param}").solution
+    return solved("table5_paper", "solver.intervals=10", "solver.starts=1", f"task.rest={request.param}").solution
 
 
 @pytest.fixture(scope="module")

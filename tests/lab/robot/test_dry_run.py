@@ -29,7 +29,7 @@ GOAL_TIME = 2.0
 @pytest.fixture(scope="module")
 def result(solved: Callable[..., Any]) -> Any:
     pytest.importorskip("mujoco", minversion="3.7", reason="mujoco is in the extra 'lab'")
-    return solved("table5", *CHEAP)
+    return solved("table5_paper", *CHEAP)
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +162,7 @@ def test_at_rest_before_and_after_the_object_is_in_balance(result, solved):
         pull = pin.computeFrameJacobian(robot.model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3].T @ plan.force[row]
         torque = pin.computeGeneralizedGravity(robot.model, data, q) - pull
         np.testing.assert_allclose(plan.torque[row], JOINT_SIGNS * torque[moving], atol=1e-6)
-    gentle = Plan.of(solved("table5", *CHEAP, "task.rest=acceleration").solution)
+    gentle = Plan.of(solved("table5_paper", *CHEAP, "task.rest=acceleration").solution)
     for rows in (gentle.force, gentle.moment, gentle.torque):
         np.testing.assert_allclose(rows[[0, -1]], rows[[1, -2]], atol=1e-5)
 

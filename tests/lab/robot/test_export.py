@@ -30,7 +30,7 @@ GOAL_TIME = 1.25
 
 @pytest.fixture(scope="module")
 def result(solved: Callable[..., Any]) -> Any:
-    return solved("table5", *CHEAP)
+    return solved("table5_paper", *CHEAP)
 
 
 @pytest.fixture(scope="module")

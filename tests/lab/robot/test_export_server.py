@@ -28,12 +28,12 @@ CHEAP = ("solver.intervals=10", "solver.starts=1")
 
 @pytest.fixture(scope="module")
 def result(solved: Callable[..., Any]) -> Any:
-    return solved("table5", *CHEAP)
+    return solved("table5_paper", *CHEAP)
 
 
 @pytest.fixture(scope="module")
 def gentle(solved: Callable[..., Any]) -> Any:
-    return solved("table5", *CHEAP, "task.rest=acceleration")
+    return solved("table5_paper", *CHEAP, "task.rest=acceleration")
 
 
 @pytest.fixture(scope="module")
