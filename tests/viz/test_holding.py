@@ -18,7 +18,7 @@ from liftopt.viz.playback import Playback, playback_of
 from liftopt.viz.scene_gripper import gripper_digits
 from liftopt.viz.scene_hand import PALM, RIGHT, hand_digits, palm_tilt
 
-CHEAP = ("solver.intervals=10", "solver.starts=1")
+CHEAP = ("solver.intervals=10", "solver.starts=1", "objective.preset=paper")
 WRENCH = ("human.grasp=wrench", "robot.grasp=wrench")
 CLOSURE = 1e-3  # [m]: what a verified solution allows between knots
 DEEPEST, TOUCHES = 3e-3, 4e-3  # [m]
