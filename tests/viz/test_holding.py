@@ -21,6 +21,7 @@ from liftopt.viz.scene_hand import PALM, RIGHT, hand_digits, palm_tilt
 CHEAP = ("solver.intervals=10", "solver.starts=1", "objective.preset=paper")
 WRENCH = ("human.grasp=wrench", "robot.grasp=wrench")
 CLOSURE = 1e-3  # [m]: what a verified solution allows between knots
+ROOT = 1 / 7  # of a bone
 DEEPEST, TOUCHES = 3e-3, 4e-3  # [m]
 
 
@@ -50,7 +51,9 @@ def _apart(playback: Playback, lift: Any, names: list[str], bones: list[tuple[fl
     for name, (length, radius) in zip(names, bones, strict=True):
         bone = _frame(playback, name, k)
         turn = bone[:3, [1, 2, 0]]  # coal's capsule lies along z, a bone along x
-        middle = bone[:3, 3] + bone[:3, 0] * length / 2
+        # A bone's root is flesh of what carries it, and no hinge can move it.
+        root, length = ROOT * length, (1.0 - ROOT) * length
+        middle = bone[:3, 3] + bone[:3, 0] * (root + length / 2)
         found.append(
             coal.distance(
                 coal.Capsule(radius, length), coal.Transform3s(turn, middle), box,
