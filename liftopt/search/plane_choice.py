@@ -158,9 +158,11 @@ def _shared(solids: TeamSolids, found: SolidDistances, p: int, k: int, normals: 
 
 
 def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: Array) -> list[int]:
-    """Return the corners of a hull that lie nearest against the normal."""
+    """Return the corners of a hull that lie nearest against the normal; of what stands, one is always the nearest."""
     count = len(solids.solids[s].points)
     along = found.points[k, s, :count] @ normal
+    if solids.bodies[s].part == WORLD:
+        return [int(along.argmin())]
     reach = np.inf if solids.solids[s].kind == "capsule" else FARTHER
     return [int(i) for i in np.flatnonzero(along <= along.min() + reach)]
 

@@ -1,7 +1,8 @@
 """The main job, a scenario in and a verified optimal lift out, told on one page.
 
 1. Postures at both ends of the lift give initial guesses (``initial_guesses``).
-2. Many of them are solved on a coarse mesh, and the best optima are varied (``coarse_search``).
+2. Many of them are solved on a coarse mesh, and the best optima are varied (``coarse_search``). Where bodies overlap in
+   them they are kept apart (``keep_clear``); where that cannot be done, ``explain_blocked`` says which are in the way.
 3. The best of these are taken to the mesh that was asked for and verified there (``refine_mesh``).
 4. If nothing is verified, a few guesses are solved on that mesh itself (``solve_starts``), then many more on the coarse
    one (``search_wider``).

@@ -169,7 +169,7 @@ def test_integrand_of_a_natural_lift_adds_up_to_its_objective(natural: Any) -> N
 
 
 def test_both_optima_of_a_natural_lift_agree_at_the_limit_to_a_thousandth(natural: Any) -> None:
-    # Hands that transmit moments and turn on the object. Measured: 161.863 extrapolated and 161.849.
+    # Hands that transmit moments and turn on the object. Measured: 0.013 % apart.
     study = mesh_study(natural, (10, 20))
     assert study.approaching
     assert study.order == 2

@@ -13,7 +13,7 @@ from liftopt.search.candidate import Candidate
 from liftopt.search.make_clear import pairs_in
 from liftopt.search.session import Session
 from liftopt.search.solid_distances import solid_distances
-from liftopt.search.solve import find_lift
+from liftopt.search.solve import find_lift, solve
 from liftopt.search.team_solids import TeamSolids
 
 BOX = {"object.depth": 0.3, "object.width": 0.3, "object.height": 0.3, "solver.tries": 16}
@@ -109,3 +109,14 @@ def test_a_lift_that_bodies_block_says_which() -> None:
     named = [reason for reason in found.reasons if reason.constraint == "clearance"]
     assert any("wall" in reason.who and reason.amount > 0.05 for reason in named)
     assert "wall" in found.best.outcome
+
+
+def test_an_object_that_starts_within_something_is_to_start_above_it() -> None:
+    """A pallet that is 5 cm higher than where the object starts: the reason tells so, the change was solved."""
+    pallet = {"name": "pallet", "box": [0.3, 3.0, 0.95], "position": [0.6, 0.0, 0.475]}
+    scenario = load_scenario("table5_paper").replace({**QUICK, "solver.tries": 4, "limits.clearance": 0.0})
+    solution = solve(scenario.replace({"obstacles": [pallet]}))
+    (reason,) = [reason for reason in solution.reasons if reason.who == "table and pallet"]
+    assert not solution.solved and reason.time == 0.0 and reason.amount == pytest.approx(0.05, abs=2e-3)
+    higher = [change for change in solution.suggested_changes if change.keys == ("task.start.height",)]
+    assert higher and higher[0].values[0] >= 0.949
