@@ -115,7 +115,8 @@ def test_no_finger_is_in_the_object_and_a_held_one_is_touched(lift: Any, playbac
             apart = _apart(playback, lift, *hand, k)
             assert apart.min() > -DEEPEST - CLOSURE, (hand[0][int(np.argmin(apart))], k)
             assert apart.reshape(5, -1).min(axis=1).max() < TOUCHES, (apart, k)
-            assert jaws.min() < TOUCHES
+            if lift.scenario.object.height < 0.1:  # jaws do not span a box
+                assert jaws.min() < TOUCHES
 
 
 def test_a_gripper_opens_across_the_plate_where_the_hold_is_level(lift: Any, playback: Playback) -> None:
