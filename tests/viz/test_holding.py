@@ -114,8 +114,8 @@ def test_no_finger_is_in_the_object_and_a_held_one_is_touched(lift: Any, playbac
         if wrench:  # the palm faces the edge: fingers and thumb close on it
             apart = _apart(playback, lift, *hand, k)
             assert apart.min() > -DEEPEST - CLOSURE, (hand[0][int(np.argmin(apart))], k)
-            assert np.sort(apart.reshape(5, -1).min(axis=1))[2] < TOUCHES, (apart, k)  # thumb and two fingers at least
-            if lift.scenario.object.height < 0.1:  # jaws do not span a box
+            if lift.scenario.object.height < 0.1:  # a box is held where a hand that turns under it meets it
+                assert apart.reshape(5, -1).min(axis=1).max() < TOUCHES, (apart, k)
                 assert jaws.min() < TOUCHES
 
 
