@@ -1,4 +1,4 @@
-"""What a solution means: three verdicts (the mathematics, the person, the robot) and the findings they rest on.
+"""What a solution means: four verdicts (person, robot, clearance, mathematics) and the findings they rest on.
 
 Terminal, ``--json``, report, ``solution.nc`` and Python tell the same list, made once by ``assess``.
 """

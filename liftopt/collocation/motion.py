@@ -60,9 +60,9 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
 
     Keys: each agent's name (squared torques of its moving joints, eq. 10, or squared shares of their limits in the
     torques' directions, as the task has it), ``"acceleration"`` (squared accelerations of those joints and of the
-    object's six coordinates) and ``"force"`` (squared grasp forces, and squared moments over the squared breadth of the
-    hand); with shares, or where they have a weight, ``"range"`` (what joint angles cost, see ``Comfort``) and
-    ``"tilt"`` (the object's squared roll and pitch in units of ``TILT``).
+    object's six coordinates, times the task's pace) and ``"force"`` (squared grasp forces, and squared moments over the
+    squared breadth of the hand); with shares, or where they have a weight, ``"range"`` (what joint angles cost, see
+    ``Comfort``) and ``"tilt"`` (the object's squared roll and pitch in units of ``TILT``).
     """
     task = problem.task
     step = np.diff(motion.time)
@@ -75,7 +75,7 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
     acceleration = acceleration + (motion.object.pose_acceleration**2).sum(axis=1)
     contact = [np.hstack([agent.grasp_force, agent.grasp_moment / agent.grasp.breadth]) for agent in motion.agents]
     force = np.sum([(each**2).sum(axis=1) for each in contact], axis=0)
-    terms |= {"acceleration": float(weights @ acceleration), "force": float(weights @ force)}
+    terms |= {"acceleration": task.pace * float(weights @ acceleration), "force": float(weights @ force)}
     if "range" in (counted := objective_weights(problem)):
         comforts = [agent.comfort for agent in problem.team.agents]
         costs = [c.cost(a.q[:, a.moving]) for c, a in zip(comforts, motion.agents, strict=True) if c is not None]

@@ -82,7 +82,7 @@ def _motion_weights(task: LiftTask, n: int, n_y: int, posture_weight: float) -> 
     """Return the weights (n_y,) of squared knot variables that agents and object have alike."""
     variable = np.zeros(n_y)
     variable[:n] = posture_weight
-    variable[2 * n : 3 * n] = task.acceleration_weight / task.duration**3
+    variable[2 * n : 3 * n] = task.acceleration_weight * task.pace / task.duration**3
     return variable
 
 

@@ -25,6 +25,7 @@ class LiftTask:
         pose_velocity: speed limit of each coordinate [m/s, rad/s].
         agent_weights: weight of each agent's squared torques in the objective (eq. 10).
         acceleration_weight, force_weight: weights of the squared accelerations and grasp forces.
+        pace: factor on the squared accelerations, a part of their term.
         range_weight: weight of what the joint angles of agents cost, see ``Comfort``.
         tilt_weight: weight of the object's squared roll and pitch, in units of ``TILT``.
         shares: whether torques count as shares of the joint's limit in their direction, not in Nm.
@@ -46,3 +47,4 @@ class LiftTask:
     range_weight: float = 0.0
     tilt_weight: float = 0.0
     shares: bool = False
+    pace: float = 1.0

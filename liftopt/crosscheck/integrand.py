@@ -18,7 +18,7 @@ ROLL, PITCH = 3, 4
 def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: Any) -> Any:
     """Return what the objective integrates (1, K) at points (n_y, K), unknowns as in ``Coordinates.sizes``."""
     q, _, a, force, moment, tau = ca.vertsplit(points, np.cumsum([0, *at.sizes]).tolist())
-    total = task.acceleration_weight * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
+    total = task.acceleration_weight * task.pace * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
     # A moment takes a pair of contact forces, the hand's breadth apart.
     twists: Any = ca.vertsplit(moment, FORCE_SIZE)
     for i, twist in zip(at.turning, twists, strict=True):

@@ -80,7 +80,7 @@ class Followed:
         joints: (n,) names of the moving joints.
         torque: (n,) largest torque that the feedback added [Nm].
         share: (n,) that over the joint's torque limit, the larger of its two.
-        moment: largest moment that the feedback added on the object about its x axis [Nm].
+        moment: largest moment that the feedback added on the object about the axes it can turn about [Nm].
     """
 
     deviation: Deviation
@@ -117,7 +117,7 @@ class Simulation:
         for k in range(len(self._states.qpos) - 1):
             feedback = self._feedback(k)
             added = np.maximum(added, np.abs(self._at_hinges(k, feedback)))
-            moment = max(moment, abs(float(feedback[self._roll])))
+            moment = max(moment, float(np.linalg.norm(feedback[self._turns])))
             worst = np.maximum(worst, self._advance(k, self._feedforward(k, True) + feedback))
             if np.isinf(worst).any():
                 break
@@ -215,6 +215,11 @@ class Simulation:
     def _roll(self) -> int:
         return self._body + 3
 
+    @property
+    def _turns(self) -> list[int]:
+        """Where in qvel the object can turn about its grasp points: a single point leaves all three axes free."""
+        return [self._roll] if len(self.solution.agents) > 1 else [self._roll, self._roll + 1, self._roll + 2]
+
     def _start(self, k: int, serve: bool) -> float:
         """Put the simulation on the solution; return by how much its grasp forces differ there [N]."""
         mujoco, data = import_mujoco(), self._data
@@ -237,7 +242,7 @@ class Simulation:
     def _feedback(self, k: int) -> Array:
         mujoco, model, data = import_mujoco(), self._model, self._data
         acceleration = BANDWIDTH**2 * self._error(k) + 2 * BANDWIDTH * (self._states.qvel[k] - data.qvel)
-        held = np.isin(np.arange(model.nv), [*self._joints, self._roll])
+        held = np.isin(np.arange(model.nv), [*self._joints, *self._turns])
         force = np.zeros(model.nv)
         mujoco.mj_mulM(model, data, force, acceleration * held)
         return force * held

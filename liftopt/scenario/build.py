@@ -115,18 +115,19 @@ def task_of(scenario: Scenario) -> LiftTask:
         pose_upper=np.array([ROOM, ROOM, ROOM, roll, pitch, yaw]),
         pose_velocity=np.full(6, OBJECT_SPEED),
         agent_weights=tuple(agent.weight for agent in scenario.agents.values()),
-        acceleration_weight=objective.acceleration_weight * _pace(scenario),
+        acceleration_weight=objective.acceleration_weight,
         force_weight=objective.force_weight,
         range_weight=objective.range_weight,
         tilt_weight=objective.tilt_weight,
         shares=objective.preset == "natural",
+        pace=_pace(scenario),
         max_grasp_force=limits.max_grasp_force,
         balance_tolerance=limits.balance_tolerance,
     )
 
 
 def _pace(scenario: Scenario) -> float:
-    """Return the factor on the weight of accelerations: in preset natural, a slow lift is as smooth as a fast one.
+    """Return the factor on squared accelerations: in preset natural, a slow lift is as smooth as a fast one.
 
     People move along the same path with the same profile of speed whatever their pace and load (Atkeson &
     Hollerbach, 1985, J Neurosci 5:2318-2330). Accelerations fall with the square of the duration, so that the same

@@ -46,6 +46,21 @@ def test_it_is_read_back_with_its_terms(natural: Solution, solved: Callable[...,
     assert [terms[name]["unit"] for name in ("human", "robot", "range", "tilt")] == ["s"] * 4
 
 
+def test_the_scenarios_own_weights_make_up_the_objective_at_any_pace(solved: Callable[..., Any]) -> None:
+    """Terms in solution.nc times the weights in the scenario; the accelerations by hand, (1.5 s / 2 s)^4 of them."""
+    folder = solved(*NATURAL, "duration=1.5", "solver.starts=1", "solver.tries=8").folder
+    with xr.open_dataset(folder / "solution.nc") as data:
+        terms = {name.removeprefix("objective_"): v for name, v in data.attrs.items() if name.startswith("objective_")}
+        scenario = load_result(folder).scenario
+        weights = {name: agent.weight for name, agent in scenario.agents.items()}
+        weights |= {n: scenario.value(f"objective.{n}_weight") for n in ("acceleration", "force", "range", "tilt")}
+        assert data.attrs["objective"] == pytest.approx(sum(w * terms[n] for n, w in weights.items()), rel=1e-12)
+        squares = sum((data[name].values[:, -n:] ** 2).sum(axis=1) for name, n in (("human_a", 10), ("robot_a", 7)))
+        squares = squares + (data["table_pose_acceleration"].values ** 2).sum(axis=1)
+        expected = 0.75**4 * np.trapezoid(squares, data["time"].values)
+    assert terms["acceleration"] == pytest.approx(expected, rel=1e-9)
+
+
 def test_ipopt_finds_no_better_one(natural: Solution, solved: Callable[..., Any]) -> None:
     """And none worse by more than 2 %: both search from several starts."""
     other = solved(*NATURAL, "solver.name=ipopt", "solver.starts=2", "solver.tries=0").solution

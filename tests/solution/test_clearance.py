@@ -29,8 +29,8 @@ SHELF = [{"name": "shelf", "box": [0.5, 0.6, 0.05], "position": [0.7, -0.1, 0.95
 
 @pytest.fixture(scope="module")
 def light(solved: Callable[..., Any]) -> Any:
-    """Return the default lift on a coarse mesh, and its folder; what overlaps in it is left as it is."""
-    return solved("table5", "solver.intervals=10", "solver.starts=1", "limits.clearance=off")
+    """Return the paper's lift on a coarse mesh, and its folder; what overlaps in it is left as it is."""
+    return solved("table5_paper", "solver.intervals=10", "solver.starts=1")
 
 
 @pytest.fixture(scope="module")

@@ -18,10 +18,12 @@ from liftopt.viz.playback import Playback, playback_of
 from liftopt.viz.scene_gripper import gripper_digits
 from liftopt.viz.scene_hand import PALM, RIGHT, hand_digits, palm_tilt
 
-CHEAP = ("solver.intervals=10", "solver.starts=1")
+CHEAP = ("solver.intervals=10", "solver.starts=1", "objective.preset=paper")
 WRENCH = ("human.grasp=wrench", "robot.grasp=wrench")
 CLOSURE = 1e-3  # [m]: what a verified solution allows between knots
-DEEPEST, TOUCHES = 3e-3, 4e-3  # [m]
+ROOT = 1 / 7  # of a bone
+# [m]: coal's capsules are as thin as the thinner end of a bone.
+DEEPEST, TOUCHES = 3e-3, 5e-3
 
 
 @pytest.fixture(scope="module", params=[(), WRENCH, (*WRENCH, "object.height=0.25")], ids=["point", "wrench", "box"])
@@ -50,7 +52,9 @@ def _apart(playback: Playback, lift: Any, names: list[str], bones: list[tuple[fl
     for name, (length, radius) in zip(names, bones, strict=True):
         bone = _frame(playback, name, k)
         turn = bone[:3, [1, 2, 0]]  # coal's capsule lies along z, a bone along x
-        middle = bone[:3, 3] + bone[:3, 0] * length / 2
+        # A bone's root is flesh of what carries it, and no hinge can move it.
+        root, length = ROOT * length, (1.0 - ROOT) * length
+        middle = bone[:3, 3] + bone[:3, 0] * (root + length / 2)
         found.append(
             coal.distance(
                 coal.Capsule(radius, length), coal.Transform3s(turn, middle), box,
@@ -107,11 +111,12 @@ def test_no_finger_is_in_the_object_and_a_held_one_is_touched(lift: Any, playbac
     for k in range(len(playback.time)):
         jaws = _apart(playback, lift, *gripper, k)
         assert jaws.min() > -DEEPEST - CLOSURE, (gripper[0][int(np.argmin(jaws))], k)
-        if wrench:  # the palm faces the edge: every finger lies on it, and the thumb
+        if wrench:  # the palm faces the edge: fingers and thumb close on it
             apart = _apart(playback, lift, *hand, k)
             assert apart.min() > -DEEPEST - CLOSURE, (hand[0][int(np.argmin(apart))], k)
-            assert apart.reshape(5, -1).min(axis=1).max() < TOUCHES, (apart, k)
-            assert jaws.min() < TOUCHES
+            if lift.scenario.object.height < 0.1:  # a box is held where a hand that turns under it meets it
+                assert apart.reshape(5, -1).min(axis=1).max() < TOUCHES, (apart, k)
+                assert jaws.min() < TOUCHES
 
 
 def test_a_gripper_opens_across_the_plate_where_the_hold_is_level(lift: Any, playback: Playback) -> None:
