@@ -181,6 +181,7 @@ def table(record: RecordedLift, overrides: list[str]) -> Iterator[str]:
             record, BOX_MASS
         ),
         "`paper`, the box by its handles": box_scenario(record, "paper", shelves=False),
+        "`paper`, with its shelves": box_scenario(record, "paper"),
         "`natural`, the box by its handles": box_scenario(record, "natural", shelves=False),
         "`natural`, with its shelves": box_scenario(record, "natural"),
     }
