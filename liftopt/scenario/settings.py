@@ -17,9 +17,9 @@ class Objective(Section):
     """What is minimised: the preset names the terms, each weighted; an agent's weight stands with the agent."""
 
     preset: Annotated[Preset, entry("a natural motion, or the terms of the paper's eq. 10")] = DEFAULT
-    acceleration_weight: Annotated[float, number("weight of the accelerations squared", "", 0.0, 1e6)] = OWN[
-        "acceleration_weight"
-    ]
+    acceleration_weight: Annotated[
+        float, number("weight of the accelerations squared (of a 2 s lift in natural)", "", 0.0, 1e6)
+    ] = OWN["acceleration_weight"]
     force_weight: Annotated[float, number("weight of the grasp forces squared", "", 0.0, 1e6)] = OWN["force_weight"]
     range_weight: Annotated[float, number("weight of joints away from ease", "", 0.0, 1e6)] = OWN["range_weight"]
     tilt_weight: Annotated[float, number("weight of (tilt / 10 deg) squared", "", 0.0, 1e6)] = OWN["tilt_weight"]
