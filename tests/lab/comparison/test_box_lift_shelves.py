@@ -96,3 +96,13 @@ def test_how_near_to_the_recording(script: ModuleType, record: RecordedLift, wit
     assert found.angles["humeral_elevation"] < 15.0
     assert found.angles["twist"] < 15.0
     assert found.angles["elbow"] < 50.0
+
+
+def test_a_hand_around_the_handle_keeps_the_wrist_as_recorded(
+    script: ModuleType, record: RecordedLift, with_shelves: Solution
+) -> None:
+    """A palm under an edge bends the wrist; the recorded hand holds a handle."""
+    around = solve(with_shelves.scenario.replace(script.AROUND_HANDLE))
+    assert around.solved, around.status
+    wrist = script.distance(around, record).angles["wrist_flexion"]
+    assert wrist < 15.0 < 30.0 < script.distance(with_shelves, record).angles["wrist_flexion"]
