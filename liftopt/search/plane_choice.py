@@ -96,6 +96,8 @@ def choose_planes(
     order = sorted(pairs.tolist(), key=lambda p: solids.bodies[solids.ends[p, 0]].part != len(solids.team.agents))
     for p in order:
         one, other = solids.ends[p]
+        if solids.bodies[one].part == solids.bodies[other].part == WORLD:
+            continue  # both stand: no motion keeps them apart
         normals = _normals(solids, found, p, options, beside.get(int(other)))
         if p in options.crossing and solids.bodies[one].part == len(solids.team.agents):
             beside[int(other)] = normals

@@ -28,6 +28,7 @@ from liftopt.search.initial_guess import InitialGuessSet, initial_guesses, naive
 from liftopt.search.mesh_refinement import refine_mesh, refine_to_tolerance, refine_until_verified
 from liftopt.search.session import Session
 from liftopt.search.solve_starts import solve_starts
+from liftopt.search.standing import standing_overlaps
 from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
 from liftopt.types import Progress
@@ -67,6 +68,9 @@ def find_lift(session: Session) -> Found:
 def search(session: Session) -> Found:
     """Return the best lift on the scenario's own mesh, or the best iterate and why it is no lift."""
     spline, problem, options = session.spline, session.problem(session.spline), session.scenario.solver
+    if reasons := standing_overlaps(session, problem):
+        best = infeasible_candidate(session.scenario, problem, spline, naive_guess(problem), reasons)
+        return Found(best, reasons=reasons)
     tries = max(options.starts, options.tries) if options.tries else 0
     guesses = _guesses(session, problem, tries or options.starts, options.seed, tries)
     if guesses is None or too_fast(problem):
