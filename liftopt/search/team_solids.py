@@ -13,9 +13,9 @@ import pinocchio as pin
 
 from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.separating_planes import WORLD, Body, PosePart, pose_parts
+from liftopt.multibody.poses import joint_placements, object_placements
 from liftopt.multibody.solid_pairs import SolidPair, solid_pairs
 from liftopt.multibody.solids import Solid
-from liftopt.multibody.trajectory import attitude
 from liftopt.types import Array, Progress
 
 CORNERS = 8  # points of the largest hull; smaller ones repeat theirs
@@ -100,30 +100,21 @@ class TeamSolids:
         return Body(owners.index(solid.owner), solid.joint)
 
     @cached_property
-    def _models(self) -> list[tuple[pin.Model, pin.Data]]:
-        models = [agent.reduced() for agent in self.team.agents]
-        return [(model, model.createData()) for model in models]
+    def _models(self) -> list[pin.Model]:
+        return [agent.reduced() for agent in self.team.agents]
 
     def placements(self, problem: Problem, coordinates: Array) -> Array:
         """Return T_world_joint (K, S, 4, 4) of the body of each solid at coordinates (K, n)."""
         found, layout = np.tile(np.eye(4), (len(coordinates), len(self.solids), 1, 1)), problem.layout
-        for i, (model, data) in enumerate(self._models):
-            joints = self.joints[i]
-            q = np.ascontiguousarray(coordinates[:, layout.columns(i)])
-            own = np.tile(np.eye(4), (len(q), len(joints), 1, 1))
-            for k in range(len(q)):
-                pin.forwardKinematics(model, data, q[k])
-                for n, joint in enumerate(joints):
-                    pose = data.oMi[joint]
-                    own[k, n, :3, :3], own[k, n, :3, 3] = pose.rotation, pose.translation
-            for s, body in enumerate(self.bodies):
-                if body.part == i:
-                    found[:, s] = own[:, joints.index(body.joint)]
-        x = coordinates[:, layout.columns(layout.n_agents)]
-        rotation = attitude(x[:, 3:])[0]
+        places: dict[Body, Array] = {}
+        for i, model in enumerate(self._models):
+            own = joint_placements(model, coordinates[:, layout.columns(i)], self.joints[i])
+            places |= {Body(i, joint): own[:, n] for n, joint in enumerate(self.joints[i])}
+        lifted = object_placements(coordinates[:, layout.columns(layout.n_agents)])
+        places |= {Body(layout.n_agents, joint): lifted for joint in self.joints[layout.n_agents]}
         for s, body in enumerate(self.bodies):
-            if body.part == layout.n_agents:
-                found[:, s, :3, :3], found[:, s, :3, 3] = rotation, x[:, :3]
+            if body in places:
+                found[:, s] = places[body]
         return found
 
     @cached_property

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 
 import coal
 import numpy as np
-import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.poses import joint_placements, object_placements
 from liftopt.multibody.solid_pairs import SolidPair
 from liftopt.multibody.solids import Solid
-from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, attitude
+from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
 from liftopt.solution.clearance import Clearance, KindClearance, PairClearance
 from liftopt.solution.clearance_bounds import Indices, PlacedSolids, sphere_bounds, tight_bounds
 from liftopt.types import Array
@@ -163,10 +163,11 @@ def _placed(
     """Return all solids of the pairs over time, and which of them each pair has."""
     solids = {id(solid): solid for pair in pairs for solid in (pair.one, pair.other)}
     index = {key: i for i, key in enumerate(solids)}
-    joints = {lifted[0].name: {1: _object_placement(lifted[1])}}
+    joints = {lifted[0].name: {1: object_placements(lifted[1].pose)}}
     for agent, motion in agents:
-        own = {solid.joint for solid in solids.values() if solid.owner == agent.name}
-        joints[agent.name] = _joint_placements(agent, motion, own)
+        own = sorted({solid.joint for solid in solids.values() if solid.owner == agent.name} - {0})
+        found = joint_placements(agent.reduced(), motion.q[:, motion.moving], own)
+        joints[agent.name] = {joint: found[:, n] for n, joint in enumerate(own)}
     world = np.broadcast_to(np.eye(4), (count, 4, 4))
     places = np.stack([
         joints.get(solid.owner, {}).get(solid.joint, world) @ solid.T_joint_solid for solid in solids.values()
@@ -174,22 +175,3 @@ def _placed(
     placed = PlacedSolids(list(solids.values()), np.ascontiguousarray(places[..., :3, :3]), places[..., :3, 3].copy())
     one, other = (np.array([index[id(getattr(pair, side))] for pair in pairs]) for side in ("one", "other"))
     return placed, one, other
-
-
-def _joint_placements(agent: Agent, motion: AgentTrajectory, joints: set[int]) -> dict[int, Array]:
-    """Return T_world_joint (K, 4, 4) of joints of an agent's reduced model, the world left out."""
-    model, q = agent.reduced(), motion.q[:, motion.moving]
-    data, found = model.createData(), {joint: np.empty((len(q), 4, 4)) for joint in joints - {0}}
-    for k in range(len(q)):
-        pin.forwardKinematics(model, data, q[k])
-        for joint, placement in found.items():
-            placement[k] = data.oMi[joint].homogeneous
-    return found
-
-
-def _object_placement(motion: ObjectTrajectory) -> Array:
-    """Return T_world_body (K, 4, 4) of the object."""
-    placement = np.zeros((len(motion.pose), 4, 4))
-    placement[:, :3, :3] = attitude(motion.pose[:, 3:])[0]
-    placement[:, :3, 3], placement[:, 3, 3] = motion.pose[:, :3], 1.0
-    return placement

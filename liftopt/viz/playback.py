@@ -12,6 +12,7 @@ from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.posture import TRUNK
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.poses import joint_placements
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import agents_of
 from liftopt.solution.interpolation import motion_between
@@ -166,15 +167,9 @@ def _check(solution: Solution) -> None:
 
 def _placements(agent: Agent, q: Array) -> dict[str, Array]:
     """Return T_world_joint (K, 4, 4) of every joint at each row of ``q`` (K, n)."""
-    model = agent.model
-    data = model.createData()
-    names = list(model.names)[1:]
-    placements = {name: np.zeros((len(q), 4, 4)) for name in names}
-    for k, row in enumerate(q):
-        pin.forwardKinematics(model, data, row)
-        for j, name in enumerate(names, start=1):
-            placements[name][k] = data.oMi[j].homogeneous
-    return placements
+    names = list(agent.model.names)[1:]
+    found = joint_placements(agent.model, q, range(1, len(names) + 1))
+    return {name: found[:, n] for n, name in enumerate(names)}
 
 
 def _object_placement(pose: Array) -> pin.SE3:
