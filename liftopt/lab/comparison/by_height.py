@@ -70,15 +70,15 @@ def read_height_curves(file: Path) -> HeightCurves:
 
 def at_heights(motion: Motion, height: Array) -> dict[str, Array]:
     """Return the angles (H,) of a motion where its wrist first passes each height [m]; NaN where it does not."""
-    found = {name: np.full(len(height), np.nan) for name in predicted_angles(motion)}
-    above = motion.wrist_height
+    angles, above = predicted_angles(motion), motion.wrist_height
+    found = {name: np.full(len(height), np.nan) for name in angles}
     for i, level in enumerate(height):
         crossing = np.flatnonzero((above[:-1] - level) * (above[1:] - level) <= 0.0)
         if not len(crossing):
             continue
         k = int(crossing[0])
         share = (level - above[k]) / (above[k + 1] - above[k]) if above[k + 1] != above[k] else 0.0
-        for name, values in predicted_angles(motion).items():
+        for name, values in angles.items():
             found[name][i] = values[k] + share * (values[k + 1] - values[k])
     return found
 
