@@ -28,7 +28,7 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
     yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:
         yield _posture(who, ergonomics, measure) if measure.code == "posture" else _guide(who, measure)
-    if len(fine.agents) > 1:
+    if fine.object.grasp_position.shape[1] > 1:
         yield squeeze_finding(fine, person)
     yield share_finding(fine, person, who)
     yield from cap_findings(fine, person, who)
