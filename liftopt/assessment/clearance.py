@@ -9,7 +9,7 @@ import numpy as np
 from liftopt.assessment.who import HANDS, whose
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import obstacles_of
-from liftopt.scenario.placement import grasp_points
+from liftopt.scenario.grasps import grasp_points
 from liftopt.scenario.task import GraspPlace
 from liftopt.solution.checks import TOUCH
 from liftopt.solution.clearance import WITHIN_BODIES, Clearance, PairClearance

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 from liftopt.assessment.who import listed
 from liftopt.scenario.agents import Person
+from liftopt.scenario.grasps import grasp_heights
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import edge_heights, lead, partner, stand_of
+from liftopt.scenario.placement import lead, partner, stand_of
 from liftopt.solution.finding import CAUTION, CLEARANCE, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -81,7 +82,7 @@ def _told(verdict: Finding, verdicts: Sequence[Finding]) -> str:
 
 def _scenario(scenario: Scenario) -> list[str]:
     box = scenario.object
-    start, end = edge_heights(scenario)
+    start, end = grasp_heights(scenario)
     lift = "lift" if len(scenario.agents) > 1 else "lifts"
     return _wrapped(
         f"{listed(_described(scenario))} {lift} {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) "

@@ -18,8 +18,9 @@ from liftopt.multibody.robots.sawyer import LEVEL_TOOL, sawyer_agent
 from liftopt.multibody.solids import Solid, placed_box
 from liftopt.multibody.table import lifted_table
 from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.grasps import grasp_points, middle_of_grasps, middle_of_hands
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import grasp_points, lead, stand_of
+from liftopt.scenario.placement import lead, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.types import Array
 
@@ -102,11 +103,10 @@ def obstacles_of(scenario: Scenario) -> tuple[Solid, ...]:
 def task_of(scenario: Scenario) -> LiftTask:
     """Return the task: poses at both ends by the height and tilt of the grasp points, sideways free."""
     limits, objective = scenario.limits, scenario.objective
-    pitch, yaw = math.radians(limits.table_pitch_deg), math.radians(limits.table_yaw_deg)
-    # Point grasps on one line along X cannot turn the object about it: its roll is locked.
-    lines = {(y, z) for _, y, z in grasp_points(scenario).values()}
-    turnable = len(lines) > 1 or any(agent.grasp == "wrench" for agent in scenario.agents.values())
-    roll = math.radians(limits.table_roll_deg) if turnable else 0.0
+    turns = [math.radians(most) for most in (limits.table_roll_deg, limits.table_pitch_deg, limits.table_yaw_deg)]
+    if (locked := _unturnable_axis(scenario)) is not None:
+        turns[locked] = 0.0
+    roll, pitch, yaw = turns
     return LiftTask(
         duration=scenario.duration,
         start=_pose(scenario, scenario.task.start),
@@ -124,6 +124,14 @@ def task_of(scenario: Scenario) -> LiftTask:
         max_grasp_force=limits.max_grasp_force,
         balance_tolerance=limits.balance_tolerance,
     )
+
+
+def _unturnable_axis(scenario: Scenario) -> int | None:
+    """Return about which of its axes nobody can turn the object: point grasps on one line cannot about that line."""
+    if any(agent.grasp == "wrench" for agent in scenario.agents.values()):
+        return None
+    points = list(grasp_points(scenario).values())
+    return next((axis for axis in range(3) if len({point[:axis] + point[axis + 1 :] for point in points}) == 1), None)
 
 
 def _pace(scenario: Scenario) -> float:
@@ -157,15 +165,18 @@ def _grasp(who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
 
 
 def _pose(scenario: Scenario, place: GraspPlace | ObjectPlace) -> Array:
-    """Return the pose of the centre of mass: the object's own, or from where the grasp points are.
+    """Return the pose of the centre of mass: the object's own, or from where the grasps are.
 
-    ``height`` is midway between them, ``human_distance`` the lead's. The centre of mass lies half the box's height off
-    that middle, along the body's Z axis; half the depth along its X axis leads there from the lead's grasp point.
+    ``height`` is midway between the lead's hands and the partner's, ``human_distance`` that of the middle of the
+    lead's.
     """
     if isinstance(place, ObjectPlace):
         x, y = (np.nan if value is None else value for value in (place.x, place.y))
         return np.array([x, y, place.z, 0.0, math.radians(place.pitch_deg), 0.0])
-    box, pitch, feet = scenario.object, math.radians(place.pitch_deg), stand_of(scenario, lead(scenario))
-    forward = (box.depth * math.cos(pitch) + box.height * math.sin(pitch)) / 2
-    ahead = np.nan if place.human_distance is None else feet.x + (place.human_distance + forward)
-    return np.array([ahead, np.nan, place.height + box.height / 2 * math.cos(pitch), 0.0, pitch, 0.0])
+    pitch, first = math.radians(place.pitch_deg), lead(scenario)
+    cos, sin = math.cos(pitch), math.sin(pitch)
+    own, middle = middle_of_hands(scenario, first), middle_of_grasps(scenario)
+    forward = -own[0] * cos - own[2] * sin
+    distance = place.human_distance
+    ahead = np.nan if distance is None else stand_of(scenario, first).x + (distance + forward)
+    return np.array([ahead, np.nan, place.height - middle[2] * cos + middle[0] * sin, 0.0, pitch, 0.0])

@@ -111,9 +111,9 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
             "only the two who face each other",
         ),
         (
-            "agents.third={kind='robot', model='sawyer', base={x=0.6, y=1.3, yaw_deg=-90}}",
+            "agents.third={kind='robot', model='sawyer', base={x=1.9, y=1.3, yaw_deg=170}}",
             "object.grasps.third",
-            r"must be \[x, y, z\]",
+            r"by default it is where robot holds; must be \[x, y, z\]",
         ),
         ("agents.table={kind='robot', model='sawyer'}", "agents", "is the name of something else"),
         ("agents.solver={kind='robot', model='sawyer'}", "agents", "is the name of something else"),
