@@ -99,6 +99,7 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
     assert urdf_files(two_people) == {"anna": "anna.urdf", "ben": "ben.urdf", "box": "box.urdf"}
     assert urdf_files(trio)["human"] == "human_arm.urdf"
     assert urdf_files(load_scenario())["robot"] == "sawyer.urdf"
+    assert urdf_files(load_scenario("table5", ["human.body=whole"]))["human"] == "human.urdf"
 
 
 @pytest.mark.parametrize(
