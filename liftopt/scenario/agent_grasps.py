@@ -10,7 +10,7 @@ from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.person.holds import hand_on
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL
 from liftopt.scenario.agents import Person, Robot
-from liftopt.scenario.grasps import PlacedGrasp, grasps_of
+from liftopt.scenario.grasps import PlacedGrasp, placed_grasps
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import stand_of
 from liftopt.types import Array
@@ -20,7 +20,7 @@ AGAINST_A_SIDE = ("side", "handle")
 
 def with_grasps(scenario: Scenario, agent: Agent) -> Agent:
     """Return an agent whose grasps are named and hold as the scenario says; it has one for each hold already."""
-    holds = [hold for hold in grasps_of(scenario) if hold.agent == agent.name]
+    holds = [hold for hold in placed_grasps(scenario) if hold.agent == agent.name]
     grasps = [
         _grasp(scenario.agents[agent.name], replace(grasp, name=hold.name), _reference(scenario, hold))
         for grasp, hold in zip(agent.grasps, holds, strict=True)

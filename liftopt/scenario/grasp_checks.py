@@ -9,7 +9,7 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.agents import Person
 from liftopt.scenario.fields import ScenarioFields
-from liftopt.scenario.grasps import PlacedGrasp, grasp_names, grasps_of
+from liftopt.scenario.grasps import PlacedGrasp, grasp_names, placed_grasps
 
 SAME_PLACE = 1e-3  # [m]
 BESIDE = 0.10  # [m]: how far outside the box a grasp may be, on a handle that sticks out
@@ -24,7 +24,7 @@ def check_grasps(scenario: ScenarioFields) -> None:
     for name in scenario.object.grasps:
         if name not in names:
             raise InputError(f"object.grasps.{name}", NO_VALUE, f"is the grasp of nobody{_meant(scenario, name)}")
-    grasps = grasps_of(scenario)
+    grasps = placed_grasps(scenario)
     for grasp in grasps:
         _check_point(scenario, grasp)
         agent = scenario.agents[grasp.agent]

@@ -54,7 +54,7 @@ def grasp_names(scenario: ScenarioFields) -> dict[str, tuple[str, Hand | None]]:
     return names
 
 
-def grasps_of(scenario: ScenarioFields) -> tuple[PlacedGrasp, ...]:
+def placed_grasps(scenario: ScenarioFields) -> tuple[PlacedGrasp, ...]:
     """Return all holds on the object, in the agents' order, a right hand first.
 
     Raises:
@@ -64,13 +64,13 @@ def grasps_of(scenario: ScenarioFields) -> tuple[PlacedGrasp, ...]:
 
 
 def grasp_points(scenario: ScenarioFields) -> dict[str, Point]:
-    """Return where each grasp is, in the object's axes from its centre [m], in the order of ``grasps_of``."""
-    return {grasp.name: grasp.point for grasp in grasps_of(scenario)}
+    """Return where each grasp is, in the object's axes from its centre [m], in the order of ``placed_grasps``."""
+    return {grasp.name: grasp.point for grasp in placed_grasps(scenario)}
 
 
 def middle_of_hands(scenario: ScenarioFields, agent: str) -> Point:
     """Return the middle of where an agent holds the object, in the object's axes from its centre [m]."""
-    points = [grasp.point for grasp in grasps_of(scenario) if grasp.agent == agent]
+    points = [grasp.point for grasp in placed_grasps(scenario) if grasp.agent == agent]
     x, y, z = (sum(column) / len(points) for column in zip(*points, strict=True))
     return x, y, z
 

@@ -8,7 +8,7 @@ from liftopt.errors import InputError
 from liftopt.multibody.person.anthropometry import dimension
 from liftopt.multibody.person.subject import Subject
 from liftopt.scenario.build import task_of
-from liftopt.scenario.grasps import grasp_heights, grasp_points, grasps_of
+from liftopt.scenario.grasps import grasp_heights, grasp_points, placed_grasps
 from liftopt.scenario.model import Scenario, load_scenario
 
 BOX = {"object.depth": 0.6, "object.width": 0.4, "object.height": 0.3}
@@ -23,16 +23,16 @@ def whole(**grasps: object) -> Scenario:
 def test_an_arm_has_the_right_hand_and_a_whole_body_both() -> None:
     one = load_scenario("table5", BOX)
     assert one.value("human.hands") == ("right",)
-    assert [(grasp.name, grasp.hand) for grasp in grasps_of(one)] == [("human", "right"), ("robot", None)]
+    assert [(grasp.name, grasp.hand) for grasp in placed_grasps(one)] == [("human", "right"), ("robot", None)]
     both = one.replace({"human.body": "whole"})
     assert both.value("human.hands") == ("right", "left")
-    assert [(grasp.name, grasp.agent, grasp.hand) for grasp in grasps_of(both)] == [
+    assert [(grasp.name, grasp.agent, grasp.hand) for grasp in placed_grasps(both)] == [
         ("human_right", "human", "right"),
         ("human_left", "human", "left"),
         ("robot", "robot", None),
     ]
     left = both.replace({"human.hands": ["left"]})
-    assert [(grasp.name, grasp.hand) for grasp in grasps_of(left)] == [("human", "left"), ("robot", None)]
+    assert [(grasp.name, grasp.hand) for grasp in placed_grasps(left)] == [("human", "left"), ("robot", None)]
     assert grasp_points(left)["human"] == grasp_points(one)["human"]
 
 
@@ -66,7 +66,7 @@ def test_two_hands_are_a_shoulders_breadth_apart_or_at_the_ends_of_a_narrow_edge
     ],
 )
 def test_places_by_name(place: str, right: tuple[float | None, ...]) -> None:
-    held = {grasp.name: grasp for grasp in grasps_of(whole(human_right=place, human_left=place))}
+    held = {grasp.name: grasp for grasp in placed_grasps(whole(human_right=place, human_left=place))}
     assert held["human_right"].hold == held["human_left"].hold == place
     for at, expected in zip(held["human_right"].point, right, strict=True):
         assert expected is None or at == pytest.approx(expected, abs=1e-12)
@@ -78,7 +78,9 @@ def test_places_by_name(place: str, right: tuple[float | None, ...]) -> None:
 
 
 def test_a_place_may_have_a_position_of_its_own() -> None:
-    held = grasps_of(whole(human_right={"place": "handle", "position": [0.1, -0.22, 0.1]}, human_left=[0.0, 0.2, 0.0]))
+    held = placed_grasps(
+        whole(human_right={"place": "handle", "position": [0.1, -0.22, 0.1]}, human_left=[0.0, 0.2, 0.0])
+    )
     assert [(grasp.hold, grasp.point) for grasp in held[:2]] == [
         ("handle", (0.1, -0.22, 0.1)),
         ("edge", (0.0, 0.2, 0.0)),
