@@ -40,14 +40,14 @@ class Person(Section):
     body: Annotated[Body, entry("right arm and trunk on legs like posts, or the whole body")] = "arm"
     hands: Annotated[
         tuple[Hand, ...],
-        Field(min_length=1),
+        Field(min_length=1, default_factory=lambda: OF_BODY["arm"]),
         AfterValidator(in_order),
         Listed,
         entry(
             "which hands hold; by default the right one of an arm, both of a whole body",
             'a list of "right" and "left"',
         ),
-    ] = OF_BODY["arm"]
+    ]
     position: Annotated[
         tuple[Length, Length] | None,
         Listed,
