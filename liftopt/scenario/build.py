@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
-from liftopt.multibody.agent import Agent, Grasp, LiftedObject
-from liftopt.multibody.dh import rotation_z
-from liftopt.multibody.person.human import HAND_UNDER_EDGE, Subject, human_agent
+from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import Placement
-from liftopt.multibody.robots.sawyer import LEVEL_TOOL, sawyer_agent
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.solids import Solid, placed_box
 from liftopt.multibody.table import lifted_table
+from liftopt.scenario.agent_grasps import with_grasps
 from liftopt.scenario.agents import Person, Robot
-from liftopt.scenario.grasps import grasp_points, middle_of_grasps, middle_of_hands
+from liftopt.scenario.grasps import grasp_points, middle_of_grasps, middle_of_hands, placed_grasps
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import lead, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
@@ -44,29 +44,31 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 
 def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the agent of that name; ``urdfs`` as in ``agents_of``."""
-    who, urdf = scenario.agents[name], (urdfs or {}).get(name)
-    stand = stand_of(scenario, name)
-    place = Placement.at(*stand)
-    if isinstance(who, Person):
-        friction = who.friction if who.contact == "flat" else None
-        person = human_agent(subject_of(who), urdf, name=name, place=place)
-        holds = [_grasp(grasp, who, HAND_UNDER_EDGE, stand.yaw_deg) for grasp in person.grasps]
-        return replace(person, grasps=tuple(replace(hold, friction=friction) for hold in holds))
-    robot = sawyer_agent(
-        place=place,
-        base_height=who.height,
-        tool_length=who.tool.length,
-        tool_mass=who.tool.mass,
-        urdf=urdf,
-        name=name,
-    )
-    return replace(robot, grasps=tuple(_grasp(grasp, who, LEVEL_TOOL, stand.yaw_deg - 180.0) for grasp in robot.grasps))
+    return with_grasps(scenario, _bare_agent(scenario, name, (urdfs or {}).get(name)))
+
+
+def _bare_agent(scenario: Scenario, name: str, urdf: str | None) -> Agent:
+    """Return the agent with grasps that are not yet what the scenario says of them."""
+    who, place = scenario.agents[name], Placement.at(*stand_of(scenario, name))
+    if isinstance(who, Robot):
+        return sawyer_agent(
+            place=place,
+            base_height=who.height,
+            tool_length=who.tool.length,
+            tool_mass=who.tool.mass,
+            urdf=urdf,
+            name=name,
+        )
+    if who.body == "arm":
+        return human_agent(subject_of(who), urdf, name=name, place=place)
+    return whole_human_agent(subject_of(who), urdf, name=name, place=place, hands=who.hands)
 
 
 def agent_key(scenario: Scenario, name: str) -> Hashable:
     """Return all that an agent's model depends on: two scenarios with equal keys give the same agent."""
-    who = scenario.agents[name]
-    return name, tuple(value for key, value in who if key != "weight"), stand_of(scenario, name)
+    holds = tuple((hold.name, hold.hold, hold.quarters) for hold in placed_grasps(scenario) if hold.agent == name)
+    entries = tuple(value for key, value in scenario.agents[name] if key != "weight")
+    return name, entries, stand_of(scenario, name), holds
 
 
 def object_key(scenario: Scenario) -> Hashable:
@@ -148,23 +150,6 @@ def _pace(scenario: Scenario) -> float:
 def motions_of(scenario: Scenario, intervals: int | None = None) -> RestToRestSpline:
     """Return the motions that a scenario allows: at rest at both ends as it asks, on its intervals or on others."""
     return RestToRestSpline(scenario.solver.intervals if intervals is None else intervals, scenario.task.rest)
-
-
-def _grasp(grasp: Grasp, who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
-    """Return someone's grasp as the scenario has it.
-
-    Args:
-        grasp: which one.
-        who: holds the object.
-        reference: (3, 3) the hand's orientation in the world on a level object, of one who stands as by default.
-        turn_deg: how far from that it stands turned, about Z.
-    """
-    if turn_deg:
-        reference = rotation_z(math.radians(turn_deg))[:3, :3] @ reference
-    if who.grasp == "point":
-        return replace(grasp, R_hand_object=reference.T)
-    turn = math.radians(who.grasp_turn_deg)
-    return replace(grasp, moments=True, max_moment=who.max_grasp_moment, max_turn=turn, R_hand_object=reference.T)
 
 
 def _pose(scenario: Scenario, place: GraspPlace | ObjectPlace) -> Array:
