@@ -42,6 +42,11 @@ DE_LEVA_AND_ANSUR = Source(
     "(de Leva 1996: length of 'trunk' less that of 'trunk3')",
     "computed",
 )
+DE_LEVA_BELOW_OMPHALION = Source(
+    "hip: omphalion height (ANSUR II regression) less the lower trunk (de Leva 1996); knee: between hip and lateral "
+    "malleolus in the proportion of his thigh and shank",
+    "computed",
+)
 DE_LEVA_ON_ANSUR = Source(
     "de Leva (1996) mass fractions, centres of mass and radii of gyration; arm segments in his lengths, trunk and legs "
     "on heights and breadths from ANSUR II regressions; lumped by the parallel-axis theorem",

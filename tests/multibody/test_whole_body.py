@@ -12,7 +12,8 @@ from liftopt.multibody.person.anthropometry import dimension, landmarks
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.leg_strength import LEG_STRENGTHS, IsometricCurve
 from liftopt.multibody.person.subject import Subject
-from liftopt.multibody.person.whole_body import ARM, JOINTS, LEGS, TRUNK, whole_human_agent
+from liftopt.multibody.person.whole_body import whole_human_agent
+from liftopt.multibody.person.whole_joints import ARM, JOINTS, LEGS, TRUNK
 from liftopt.multibody.placement import Placement
 from liftopt.types import Array
 

@@ -7,7 +7,7 @@ from math import pi
 
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Sex, Subject
-from liftopt.multibody.sources import ANSUR_II, DE_LEVA_1996, DE_LEVA_AND_ANSUR, Source
+from liftopt.multibody.sources import ANSUR_II, DE_LEVA_1996, DE_LEVA_AND_ANSUR, DE_LEVA_BELOW_OMPHALION, Source
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,11 @@ LINK_SOURCES: dict[str, Source] = {
     "L4": DE_LEVA_1996,  # shoulder to elbow joint centre
     "L5": DE_LEVA_1996,  # elbow to wrist joint centre
     "L6": DE_LEVA_1996,  # wrist joint centre to third metacarpale, where the hand grips
+}
+JOINT_SOURCES: dict[str, Source] = {
+    "hip": DE_LEVA_BELOW_OMPHALION,
+    "knee": DE_LEVA_BELOW_OMPHALION,
+    "ankle": ANSUR_II,  # lateral malleolus
 }
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
 
 from liftopt.multibody.agent import Comfort
-from liftopt.multibody.person.range_of_motion import LEG_RANGES, RANGES, TRUNK_JOINTS, JointRange
+from liftopt.multibody.person.range_of_motion import RANGES, TRUNK_JOINTS, JointRange
+from liftopt.multibody.person.whole_joints import HANDS, WHOLE_RANGES
 from liftopt.multibody.sources import Source
 
 # The open-packed position, in which a shoulder's capsule is at its loosest, is at 30 to 60 deg of abduction.
@@ -23,6 +24,10 @@ ELBOW_AT_EASE = Source(
     "McAtamney & Corlett (1993), Applied Ergonomics 24:91-99 (RULA), and ISO 11064-4:2004", "secondary"
 )
 MIDDLE = Source("McAtamney & Corlett (1993), Applied Ergonomics 24:91-99 (RULA): forearm in mid-range", "secondary")
+TRUNK_BANDS = Source(
+    "RULA (McAtamney & Corlett, 1993) and REBA (Hignett & McAtamney, 2000): their last trunk band begins at 60 deg",
+    "secondary",
+)
 UPRIGHT = Source("RULA's best posture; the room is the range of motion", "secondary")
 
 
@@ -59,8 +64,20 @@ COMFORTS: tuple[JointComfort, ...] = (
 )
 
 
-# Standing upright with straight legs is the best posture of RULA and of REBA.
-LEG_COMFORTS: tuple[JointComfort, ...] = (JointComfort("ankle"), JointComfort("knee"), JointComfort("hip"))
+# Standing upright with straight legs is the best posture of RULA and of REBA. A knee does not bend backwards: its room
+# on that side only has to be some.
+LEG_COMFORTS: tuple[JointComfort, ...] = (
+    JointComfort("ankle"),
+    JointComfort("knee", lower=-135.0),
+    JointComfort("hip"),
+)
+# With legs that bend, the trunk's own flexion has the room that RULA and REBA give the trunk.
+BENDING_TRUNK = JointComfort("Q2", upper=60.0, source=TRUNK_BANDS)
+WHOLE_COMFORTS: tuple[JointComfort, ...] = (
+    *LEG_COMFORTS,
+    *(BENDING_TRUNK if item.joint == BENDING_TRUNK.joint else item for item in COMFORTS[:TRUNK_JOINTS]),
+    *(replace(item, joint=f"{side}_{item.joint}") for side in HANDS for item in COMFORTS[TRUNK_JOINTS:]),
+)
 
 
 def human_comfort() -> Comfort:
@@ -70,8 +87,7 @@ def human_comfort() -> Comfort:
 
 def whole_comfort() -> Comfort:
     """Return where the joints of the whole body are at ease, arrays (20,): legs, trunk, right arm, left arm."""
-    legs, table = zip(LEG_COMFORTS, LEG_RANGES, strict=True), list(zip(COMFORTS, RANGES, strict=True))
-    return _comfort([*legs, *table, *table[TRUNK_JOINTS:]])
+    return _comfort(list(zip(WHOLE_COMFORTS, WHOLE_RANGES, strict=True)))
 
 
 def _comfort(rows: Sequence[tuple[JointComfort, JointRange]]) -> Comfort:

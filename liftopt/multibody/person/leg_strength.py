@@ -8,7 +8,6 @@ from math import radians, sin
 from liftopt.multibody.person.subject import Sex, Subject
 from liftopt.multibody.sources import ANDERSON_2007, Source
 
-SOURCE: Source = ANDERSON_2007
 LEGS = 2.0
 GRAVITY = 9.81  # [m/s^2], by which the table's torques are normalised: they are shares of weight times stature
 
@@ -42,14 +41,16 @@ class LegStrength:
         sign: +1 or -1, the direction of the joint angle that the torque drives.
         motion: its anatomical name.
         curve: by sex.
+        source: of the curve.
     """
 
     joint: str
     sign: int
     motion: str
     curve: dict[Sex, IsometricCurve]
+    source: Source = ANDERSON_2007
 
-    def torque(self, subject: Subject) -> float:
+    def of(self, subject: Subject) -> float:
         """Return what both legs of the subject can do [Nm], positive: the mean over the angles of a lift."""
         lower, upper = (radians(angle) for angle in USED[self.joint])
         share = self.curve[subject.sex].mean(lower, upper)
@@ -72,9 +73,3 @@ LEG_STRENGTHS: tuple[LegStrength, ...] = (
     _strength("hip", -1, "hip extension", IsometricCurve(0.161, 0.958, 0.932), IsometricCurve(0.181, 0.697, 1.242)),
     _strength("hip", +1, "hip flexion", IsometricCurve(0.113, 0.738, -0.214), IsometricCurve(0.127, 0.65, -0.35)),
 )
-
-
-def leg_torque_limit(joint: str, sign: int, subject: Subject) -> float:
-    """Return the signed torque limit [Nm] of one joint of both legs: negative where the sign is."""
-    (strength,) = (entry for entry in LEG_STRENGTHS if entry.joint == joint and entry.sign == sign)
-    return sign * strength.torque(subject)

@@ -10,9 +10,14 @@ from liftopt.multibody.sources import Source
 
 # With the whole foot on the floor nobody leans further than the first metatarsophalangeal joint, the ball of the foot.
 FRONT_SOURCE = Source(
-    "Forward Functional Stability Indicator (FFSI), its abstract: with the feet flat, the centre of pressure stays "
-    "behind the first metatarsophalangeal joints; their distance from the heel is ANSUR II's 'balloffootlength'",
+    "study of the Forward Functional Stability Indicator (abstract): with the feet flat, nobody's centre of pressure "
+    "passes the first metatarsophalangeal joints; their distance from the heel is ANSUR II's 'balloffootlength'",
     "verified",
+)
+BACK_SOURCE = Source("the heel, behind the ankle by a quarter of the foot's length; chosen for this model", "estimate")
+ASIDE_SOURCE = Source(
+    "outer edges of two parallel feet below the hip joints (ANSUR II foot breadth; hip joints chosen for this model)",
+    "estimate",
 )
 FRICTION = 0.5
 FRICTION_SOURCE = Source(

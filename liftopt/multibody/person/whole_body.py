@@ -12,18 +12,16 @@ from math import radians
 
 import numpy as np
 
-from liftopt.multibody.agent import Agent, Grasp, HalfSpace, JointLimits
+from liftopt.multibody.agent import Agent, Grasp, HalfSpace
 from liftopt.multibody.dh import BodyInertia, frame_transforms
 from liftopt.multibody.person.anthropometry import landmarks
 from liftopt.multibody.person.bodies import whole_bodies
 from liftopt.multibody.person.comfort import whole_comfort
 from liftopt.multibody.person.human import NAME, ORIGIN, POSTURE_DEG, human_chain, human_root, joint_bounds
 from liftopt.multibody.person.human_shapes import whole_shapes
-from liftopt.multibody.person.leg_strength import leg_torque_limit
-from liftopt.multibody.person.range_of_motion import LEG_RANGES, RANGES, TRUNK_JOINTS
 from liftopt.multibody.person.stance import human_stance
-from liftopt.multibody.person.strength import torque_limit
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_joints import ARM, HANDS, JOINTS, TRUNK, table_joint, whole_limits
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.urdf import (
     FixedLink,
@@ -37,12 +35,6 @@ from liftopt.multibody.urdf import (
 )
 from liftopt.types import Array
 
-LEGS, TRUNK = ("ankle", "knee", "hip"), tuple(item.joint for item in RANGES[:TRUNK_JOINTS])
-ARM = tuple(item.joint for item in RANGES[TRUNK_JOINTS:])
-HANDS = ("right", "left")
-# The Contract's order. A URDF reader takes the joints of a branching by name, and "left" comes before "right": the left
-# arm stands on a link of its own, joined by human_shoulder_left_fixed, which comes after human_right_Q4.
-JOINTS = (*LEGS, *TRUNK, *(f"{side}_{joint}" for side in HANDS for joint in ARM))
 LEG_POSTURE_DEG = {"ankle": 10.0, "knee": 20.0, "hip": 10.0}
 # Reflections: of the world in the body's median plane, and of a frame's own z axis, about which its joint turns.
 MIRRORED_WORLD, MIRRORED_AXIS = np.diag([1.0, -1.0, 1.0, 1.0]), np.diag([1.0, 1.0, -1.0, 1.0])
@@ -64,11 +56,6 @@ def mirrored(placement: Array) -> Array:
     on both sides, N Rz(q) N = Rz(q), so an angle keeps its sign.
     """
     return np.asarray(MIRRORED_WORLD @ placement @ MIRRORED_AXIS)
-
-
-def table_joint(joint: str) -> str:
-    """Return the joint of Table 2, or of the legs, that a joint of the whole body is: ``"left_Q4"`` is ``"Q4"``."""
-    return joint.rpartition("_")[2]
 
 
 def whole_human_agent(
@@ -114,33 +101,13 @@ def grasp_frame(name: str, hand: str) -> str:
     return f"{name}_{hand}_grasp"
 
 
-def whole_limits(subject: Subject) -> JointLimits:
-    """Return ranges of motion, speeds and strength, arrays (20,) in the order of ``JOINTS``."""
-    ranges = {item.joint: item for item in (*LEG_RANGES, *RANGES)}
-    joints = [ranges[table_joint(joint)] for joint in JOINTS]
-    lower, upper = (
-        [
-            leg_torque_limit(item.joint, sign, subject)
-            if item.joint in LEGS
-            else torque_limit(item.joint, sign, subject.sex)
-            for item in joints
-        ]
-        for sign in (-1, +1)
-    )
-    return JointLimits(
-        q_lower=np.array([radians(item.lower) for item in joints]),
-        q_upper=np.array([radians(item.upper) for item in joints]),
-        velocity=np.array([item.velocity for item in joints]),
-        tau_lower=np.array(lower),
-        tau_upper=np.array(upper),
-    )
-
-
 def whole_human_urdf(subject: Subject, name: str = NAME, place: Placement = ORIGIN) -> str:
     """Return the subject's URDF; arguments as ``whole_human_agent``."""
     bodies, shapes = whole_bodies(subject), whole_shapes(subject)
     bounds = joint_bounds(JOINTS, whole_limits(subject))
     segments, grasps = _segments(subject)
+    # A URDF reader takes the joints of a branching by name, and "left" comes before "right": the left arm stands on a
+    # link of its own, whose joint human_shoulder_left_fixed comes after human_right_Q4, so that the right arm is first.
     base, shoulder = f"{name}_base", f"{name}_shoulder_left"
     at = {"": np.eye(4)} | {item.joint: item.placement for item in segments}
     links = {joint: link_name(name, joint) if joint else base for joint in at}
