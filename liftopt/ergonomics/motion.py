@@ -54,7 +54,7 @@ def motion_of(lift: Lift, person: AgentTrajectory) -> Motion:
     elevation = np.arccos(np.clip(down, -1.0, 1.0))
     level = np.hypot(forward, sideways)
     bend = np.cos(np.radians(posture.wrist_flexion)) * np.cos(np.radians(posture.wrist_deviation))
-    path = person.grasp_position
+    path = person.p_world_hold
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     return Motion(
         elbow=posture.elbow_flexion,

@@ -87,9 +87,9 @@ class Niosh:
 
 def niosh(lift: Lift, person: AgentTrajectory) -> Niosh:
     """Return the equation for a person's part of the lift."""
-    load, ends = person.grasp_force[:, 2] / GRAVITY, person.grasp_position[[0, -1]]
+    load, ends = person.load[:, 2] / GRAVITY, person.p_world_hold[[0, -1]]
     travel = abs(float(ends[1, 2] - ends[0, 2])) * 100.0
-    speed = np.linalg.norm(np.gradient(person.grasp_position, lift.time, axis=0), axis=1)
+    speed = np.linalg.norm(np.gradient(person.p_world_hold, lift.time, axis=0), axis=1)
     mean = float(np.trapezoid(load, lift.time) / (lift.time[-1] - lift.time[0]))
     k = int(np.argmax(load))
     hands = (ends - p_world_feet(lift, person.name)) @ R_world_person(lift, person.name)

@@ -66,7 +66,7 @@ def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
         pronation=middle - q["Q8"],
         wrist_flexion=-q["Q9"],
         wrist_deviation=q["Q10"],
-        hand_load=np.linalg.norm(person.grasp_force, axis=1) / GRAVITY,
+        hand_load=np.linalg.norm(person.load, axis=1) / GRAVITY,
     )
 
 
