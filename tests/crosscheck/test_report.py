@@ -142,7 +142,8 @@ def test_crosscheck_imports_nothing_of_the_solve() -> None:
         for name in _imports(path):
             assert name.startswith((*allowed, *judges.get(path.name, ()))), (path.name, name)
     recursion = (
-        "kinematics.py", "lagrangian.py", "sensitivity.py", "floating_base.py", "ground_reaction.py", "tree_dynamics.py",
+        "kinematics.py", "lagrangian.py", "sensitivity.py", "floating_base.py", "ground_reaction.py",
+        "tree_dynamics.py",
     )  # fmt: skip
     for name in recursion:
         assert not any("pinocchio" in imported for imported in _imports(PACKAGE / "crosscheck" / name)), name
