@@ -56,8 +56,8 @@ def _shear(load: SpineLoad, time: Array) -> Measure:
         "Gallagher and Marras limit on L5/S1 shear",
         "indicative",
         f"{shear[k]:.0f} N at most",
-        f"Of the net force, along a disc that is inclined by {SACRAL_SLOPE:g}° where the pelvis is upright; muscles across "
-        f"the disc are left out. The limit is for up to 100 times a day, {SHEAR_FREQUENT:g} N for up to 1000.",
+        f"Of the net force, along a disc that is inclined by {SACRAL_SLOPE:g}° where the pelvis is upright; muscles "
+        f"across the disc are left out. The limit is for up to 100 times a day, {SHEAR_FREQUENT:g} N for up to 1000.",
         SHEAR_SOURCE,
         value=float(shear[k]),
         limit=SHEAR_LIMIT,
