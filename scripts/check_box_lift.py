@@ -145,7 +145,7 @@ def distance(solution: Solution, record: RecordedLift) -> Distance:
     person, samples = dense.persons[0], len(dense.time)
     recorded = replace(person, q=record.over_lift(record.q, samples))
     ours, theirs = motion_of(dense, person), motion_of(dense, recorded)
-    hand = _travel(person.grasp_position) - _travel(record.over_lift(record.hand_position, samples))
+    hand = _travel(person.p_world_hold) - _travel(record.over_lift(record.hand_position, samples))
     path = _travel(dense.object.pose[:, :3])
     box = path - _travel(box_centres(record, samples))
     return Distance(

@@ -165,6 +165,14 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(7)
 
 
+class _Track(SimpleNamespace):
+    """A stand-in for an agent's trajectory."""
+
+    @property
+    def load(self) -> np.ndarray:
+        return self.grasp_force.sum(axis=1)
+
+
 def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[float, float, float]) -> SimpleNamespace:
     knots, n = 5, joints + 3
     names = tuple(f"{name}_GT{i}" for i in (1, 2, 3)) + tuple(f"{name}_Q{i}" for i in range(1, joints + 1))
@@ -174,7 +182,7 @@ def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[fl
     limits = SimpleNamespace(tau_lower=np.full(joints, -100.0), tau_upper=np.full(joints, 40.0))
     q = np.zeros((knots, n))
     q[:, 4] = np.radians([0.0, 10.0, 20.0, 30.0, 45.0])
-    return SimpleNamespace(
+    return _Track(
         name=name,
         kind=kind,
         joint_names=names,
@@ -182,10 +190,10 @@ def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[fl
         q=q,
         tau=tau,
         limits=limits,
-        grasp_force=force,
-        grasp_moment=np.zeros_like(force),
-        grasp=Grasp(),
-        grasp_position=np.tile(grasp, (knots, 1)),
+        grasp_force=force[:, None],
+        grasp_moment=np.zeros((knots, 1, 3)),
+        grasps=(Grasp(name, f"{name}_grasp"),),
+        grasp_position=np.tile(grasp, (knots, 1, 1)),
         ground_force=np.zeros((knots, 3)),
         ground_moment=np.zeros((knots, 3)),
     )

@@ -107,7 +107,7 @@ def made(name: str, pattern: Solution) -> Team:
 def _followed(agent: Agent, points: Array) -> Array:
     """Return joint angles (K, n) that bring the hand to ``points`` (K, 3), each from the one before."""
     model = agent.reduced()
-    data, frame, q, rows = model.createData(), model.getFrameId(agent.grasp_frame), np.array(agent.posture), []
+    data, frame, q, rows = model.createData(), model.getFrameId(agent.hands[0]), np.array(agent.posture), []
     for point in points:
         for _ in range(200):
             pin.computeJointJacobians(model, data, q)

@@ -33,11 +33,11 @@ def _forces(axes: Axes) -> None:
     paint_bodies(axes, [(lifted, lifted.q[0])], "right")
     centre = solution.object.pose[0, [0, 2]]
     for agent, color, side in zip(solution.agents, (BLUE, VERMILION), (-1, 1), strict=True):
-        point, force = agent.grasp_position[0, [0, 2]], agent.grasp_force[0, [0, 2]]
+        point, force = agent.p_world_hold[0, [0, 2]], agent.load[0, [0, 2]]
         arrow(axes, point, point + PER_NEWTON * force, color, linewidth=2.0)
         axes.plot(*point, "o", color=color, markersize=5, zorder=8)
         axes.annotate(
-            f"{agent.name}: {np.linalg.norm(agent.grasp_force[0]):.0f} N", point + PER_NEWTON * force,
+            f"{agent.name}: {np.linalg.norm(agent.load[0]):.0f} N", point + PER_NEWTON * force,
             xytext=(6 * side, 3), textcoords="offset points", ha="left" if side > 0 else "right", fontsize=8,
             color=color, zorder=8,
         )  # fmt: skip
@@ -63,7 +63,7 @@ def _hands(axes: Axes) -> None:
     paint_bodies(axes, [(lifted, lifted.q[0])], "right")
     for agent, column in zip(agents(), range(2), strict=True):
         point = solution.object.grasp_position[0, column]
-        _triad(axes, point, np.asarray(agent.grasp.R_hand_object.T), f"{agent.name}_grasp", column)
+        _triad(axes, point, np.asarray(agent.grasps[0].R_hand_object.T), f"{agent.name}_grasp", column)
     centre = solution.object.pose[0, :3]
     _triad(axes, centre, np.eye(3), solution.object.name, 2)
     axes.text(0.02, 0.805, "Circle with a dot: towards the reader. Circle with a cross: away from the reader.",

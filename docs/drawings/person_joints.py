@@ -88,7 +88,7 @@ def _motion(joint: str, sign: int) -> Motion:
 def _hand(q: Array) -> Array:
     model, data = bodies()["human"].model, bodies()["human"].model.createData()
     pin.framesForwardKinematics(model, data, q)
-    return np.array(data.oMf[model.getFrameId(agents()[0].grasp_frame)].translation)
+    return np.array(data.oMf[model.getFrameId(agents()[0].grasps[0].frame)].translation)
 
 
 def _window(look: Look, hand: Array) -> tuple[float, float, float, float]:

@@ -50,7 +50,7 @@ def _motion(joint: str) -> Motion:
     body, rest, view = bodies()["robot"], _rest(), VIEW.get(joint, "right")
     data = body.model.createData()
     pin.framesForwardKinematics(body.model, data, rest)
-    tip = np.array(data.oMf[body.model.getFrameId(agents()[1].grasp_frame)].translation)
+    tip = np.array(data.oMf[body.model.getFrameId(agents()[1].grasps[0].frame)].translation)
     if joint == "Q7":  # about the tool's own axis: a point beside it
         tip += (0.0, 0.1, 0.0)
     x, y, z = tip

@@ -138,8 +138,12 @@ def _fingers(fine: Solution) -> Iterator[Finding]:
 
 
 def _room(fine: Solution, person: AgentTrajectory, k: int) -> tuple[float, str]:
-    """Return the room below a grasp point [m] at a time, above the floor or an obstacle, and which."""
-    point, breadth = person.grasp_position[k], person.grasp.breadth
+    """Return the least room below a person's grasp points [m] at a time, above the floor or an obstacle, and which."""
+    points = zip(person.grasp_position[k], person.grasps, strict=True)
+    return min(_room_below(fine, point, grasp.breadth) for point, grasp in points)
+
+
+def _room_below(fine: Solution, point: Array, breadth: float) -> tuple[float, str]:
     room, below = float(point[2]), "floor"
     for obstacle in obstacles_of(fine.scenario):
         T_world_box, half = obstacle.T_joint_solid, np.array(obstacle.size) / 2.0

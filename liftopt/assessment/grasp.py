@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from liftopt.assessment.joints import ALL_ALONG, AT_LIMIT
-from liftopt.assessment.who import Who, listed, who_is
+from liftopt.assessment.who import Who, hand_of, listed, who_is
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
 from liftopt.solution.grasp_loads import shares, squeeze
@@ -15,15 +15,18 @@ from liftopt.solution.solution import Solution
 
 
 def cap_findings(fine: Solution, agent: AgentTrajectory, who: Who) -> Iterator[Finding]:
-    """Give the largest force of an agent's grasp, and its largest moment if it transmits any, beside their caps."""
-    caps = [("force", agent.grasp_force, fine.scenario.limits.max_grasp_force, "N", "limits.max_grasp_force")]
-    if agent.grasp.moments:
-        key = f"{agent.name}.max_grasp_moment"
-        caps.append(("moment", agent.grasp_moment, agent.grasp.max_moment, "Nm", key))
-    for what, vectors, cap, unit, key in caps:
+    """Give the largest force of each of an agent's grasps, and its largest moment if it has any, beside their caps."""
+    caps = []
+    for own, grasp in enumerate(agent.grasps):
+        hand, cap = hand_of(grasp.name, who), fine.scenario.limits.max_grasp_force
+        caps.append((hand, "force", agent.grasp_force[:, own], cap, "N", "limits.max_grasp_force"))
+        if grasp.moments:
+            key = f"{agent.name}.max_grasp_moment"
+            caps.append((hand, "moment", agent.grasp_moment[:, own], grasp.max_moment, "Nm", key))
+    for hand, what, vectors, cap, unit, key in caps:
         size = np.linalg.norm(vectors, axis=1)
         k, at = int(np.argmax(size)), size >= (1 - AT_LIMIT) * cap
-        whose = f"The {who.hand}'s {what}" if who.is_alone else f"The {what} of {who.name}'s {who.hand}"
+        whose = f"The {hand}'s {what}" if who.is_alone else f"The {what} of {who.name}'s {hand}"
         text = f"{whose} is {size[k]:.3g} {unit} at most, at {fine.time[k]:.2f} s"
         if at.any():
             text += (
@@ -81,7 +84,7 @@ def share_finding(fine: Solution, person: AgentTrajectory, who: Who) -> Finding:
         text = "There is no load to share."
         return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
     k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
-    up = np.stack([agent.grasp_force[:, 2] for agent in fine.agents])
+    up = np.stack([agent.load[:, 2] for agent in fine.agents])
     down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.object.mass * GRAVITY
     name, against = fine.object.name, down > AT_LIMIT * weight
     lift = "the other lifts" if len(fine.agents) == 2 else "others lift"

@@ -51,7 +51,7 @@ def robot_findings(fine: Solution, robot: AgentTrajectory, who: Who) -> Iterator
 def _payload(fine: Solution, robot: AgentTrajectory, who: Who, tool: float, data: RobotData | None) -> Finding:
     """Return what the flange bears, gripper and the robot's part of the load, beside what it may carry."""
     # An arm that presses down with more than its gripper weighs is loaded as well.
-    carried = np.abs(tool + robot.grasp_force[:, 2] / GRAVITY)
+    carried = np.abs(tool + robot.load[:, 2] / GRAVITY)
     k = int(np.argmax(carried))
     bears = (
         f"The {who.told} bears {carried[k]:.2f} kg at {fine.time[k]:.2f} s ({tool:g} kg of it the gripper; vertical "

@@ -83,6 +83,11 @@ def who_in(agents: Mapping[str, Person | Robot], name: str) -> Who:
     return Who(SUBJECTS[kind], name, sum(agent.kind == kind for agent in agents.values()) == 1)
 
 
+def hand_of(grasp: str, who: Who) -> str:
+    """Return the hand of a grasp by its name: ``"hand"``; ``"right hand"`` of one who has several."""
+    return f"{grasp.removeprefix(who.name).removeprefix('_')} {who.hand}".strip()
+
+
 def whose(name: str) -> str:
     """Return ``"anna's"``; ``"the robot's"`` where the name is a word for what the agent is."""
     return f"the {name}'s" if name in KINDS else f"{name}'s"

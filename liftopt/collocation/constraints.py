@@ -15,11 +15,12 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from liftopt.collocation.flat_hand import PUSH, flat_hand_rows
-from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE, Layout
+from liftopt.collocation.layout import OBJECT_SIZE, Layout
+from liftopt.collocation.outputs import AgentOutputs, outputs_of
 from liftopt.collocation.pose_kernels import POSE_SIZE
 from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
-from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.types import Array
 
 Index = npt.NDArray[np.int64]
@@ -33,7 +34,7 @@ class Block:
     Attributes:
         name: ``"grasp_closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
             ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
-        who: agent or object; of clearance, the two bodies by number.
+        who: agent, grasp or object; of clearance, the two bodies by number.
         rows: where in g.
         labels: meaning of the rows at one knot; they repeat knot by knot.
         lower, upper: bounds of the rows, scaled as the rows are.
@@ -63,8 +64,10 @@ class _Rows:
         """All knots."""
         return np.arange(len(self.layout.mesh.phase))
 
-    def outputs_at(self, part: int, knots: Index, which: Index) -> Index:
+    def outputs_at(self, part: int, knots: Index, which: Index | slice) -> Index:
         """Return the positions (knots, which) in C of some outputs of a part."""
+        if isinstance(which, slice):
+            which = np.arange(which.start, which.stop)
         first = len(self.layout.mesh.phase) * sum(self.outputs[:part])
         return first + self.outputs[part] * knots[:, None] + which
 
@@ -155,7 +158,7 @@ def build_constraints(
     """Build the rows for agents that hold one object.
 
     Args:
-        agents: in the order of the object's grasp frames.
+        agents: their grasps in the order of the object's grasp frames.
         lifted: the object.
         task: limits and tolerances.
         layout: of the unknowns.
@@ -164,13 +167,17 @@ def build_constraints(
     """
     rows = _Rows(layout, outputs)
     for i, agent in enumerate(agents):
-        _closure(rows, i, agent.name)
-        _torque(rows, i, agent)
-        _workspace(rows, i, agent)
-        _grasp_force(rows, i, agent.name, task.max_grasp_force)
-        if agent.grasp.moments:
-            _moment(rows, i, agent)
-        _flat_hand(rows, i, agent)
+        own = outputs_of(agent)
+        for g, grasp in zip(layout.grasps_of(i), agent.grasps, strict=True):
+            _closure(rows, i, own, g, grasp)
+        _torque(rows, i, own, agent)
+        for grasp in agent.grasps:
+            _workspace(rows, i, own, agent, grasp)
+        for grasp in agent.grasps:
+            _grasp_force(rows, i, own, grasp, task.max_grasp_force)
+            if grasp.moments:
+                _moment(rows, i, own, grasp)
+            _flat_hand(rows, i, own, grasp)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
     _balance(rows, len(agents), lifted, served_rows(agents, lifted, task.balance_tolerance), task.balance_tolerance)
     _velocity(rows, len(agents), lifted.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
@@ -184,67 +191,65 @@ def build_constraints(
     )
 
 
-def _closure(rows: _Rows, i: int, who: str) -> None:
+def _closure(rows: _Rows, i: int, own: AgentOutputs, g: int, grasp: Grasp) -> None:
     """Eq. 16: the agent's grasp point is the object's, p_world_grasp - p_world_edge = 0 [m]."""
-    knots, axes = rows.layout.mesh.closure_knots, np.arange(3)
-    rows.add(rows.outputs_at(i, knots, rows.layout.coordinates[i] + axes), 1.0)
-    rows.add(rows.outputs_at(rows.layout.n_agents, knots, OBJECT_SIZE + 3 * i + axes), -1.0)
-    rows.close("grasp_closure", who, ("x", "y", "z"), np.zeros(3), np.zeros(3), len(knots))
+    knots = rows.layout.mesh.closure_knots
+    rows.add(rows.outputs_at(i, knots, own.position(grasp.frame)), 1.0)
+    rows.add(rows.outputs_at(rows.layout.n_agents, knots, OBJECT_SIZE + 3 * g + np.arange(3)), -1.0)
+    rows.close("grasp_closure", grasp.name, ("x", "y", "z"), np.zeros(3), np.zeros(3), len(knots))
 
 
-def _torque(rows: _Rows, i: int, agent: Agent) -> None:
+def _torque(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:
     """Eq. 12: torques as shares of the larger of their directional limits."""
-    limits, joints = agent.limits, np.arange(rows.layout.coordinates[i])
+    limits = agent.limits
     scale = np.maximum(np.abs(limits.tau_lower), np.abs(limits.tau_upper))
-    rows.add(rows.outputs_at(i, rows.knots, joints), 1.0 / scale)
+    rows.add(rows.outputs_at(i, rows.knots, own.tau), 1.0 / scale)
     lower, upper = limits.tau_lower / scale, limits.tau_upper / scale
     rows.close("torque", agent.name, agent.moving_joints, lower, upper, len(rows.knots))
 
 
-def _workspace(rows: _Rows, i: int, agent: Agent) -> None:
+def _workspace(rows: _Rows, i: int, own: AgentOutputs, agent: Agent, grasp: Grasp) -> None:
     """Eq. 14: the grasp point stays in its half-space [m]."""
     if agent.workspace is None:
         return
-    n = rows.layout.coordinates[i]
+    first = own.position(grasp.frame).start
     for axis in np.flatnonzero(agent.workspace.normal):
-        rows.add(rows.outputs_at(i, rows.knots, np.array([n + axis])), float(agent.workspace.normal[axis]))
+        rows.add(rows.outputs_at(i, rows.knots, np.array([first + axis])), float(agent.workspace.normal[axis]))
     offset, above = np.array([agent.workspace.offset]), np.array([np.inf])
-    rows.close("workspace", agent.name, ("distance",), offset, above, len(rows.knots))
+    rows.close("workspace", grasp.name, ("distance",), offset, above, len(rows.knots))
 
 
-def _grasp_force(rows: _Rows, i: int, who: str, cap: float) -> None:
+def _grasp_force(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp, cap: float) -> None:
     """The norm of the grasp force, squared, as a share of its cap squared: the squeeze is free otherwise."""
-    squared = np.array([rows.layout.coordinates[i] + FORCE_SIZE])
-    rows.add(rows.outputs_at(i, rows.knots, squared), 1.0 / cap**2)
-    rows.close("grasp_force", who, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
+    rows.add(rows.outputs_at(i, rows.knots, own.force_squared(grasp.frame)), 1.0 / cap**2)
+    rows.close("grasp_force", grasp.name, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
 
 
-def _moment(rows: _Rows, i: int, agent: Agent) -> None:
+def _moment(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp) -> None:
     """The norm of the moment, squared, as a share of its cap squared, and the hand's angle on the object by its cosine.
 
     The cosine's slope vanishes with the angle, so an angle of zero cannot be asked for.
     """
-    after, grasp = rows.layout.coordinates[i] + FORCE_SIZE + 1, agent.grasp
-    rows.add(rows.outputs_at(i, rows.knots, np.array([after])), 1.0 / grasp.max_moment**2)
-    rows.close("grasp_moment", agent.name, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
-    rows.add(rows.outputs_at(i, rows.knots, np.array([after + 1])), 1.0)
+    rows.add(rows.outputs_at(i, rows.knots, own.moment_squared(grasp.frame)), 1.0 / grasp.max_moment**2)
+    rows.close("grasp_moment", grasp.name, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
+    rows.add(rows.outputs_at(i, rows.knots, own.cosine(grasp.frame)), 1.0)
     bounds = np.array([np.cos(grasp.max_turn)]), np.array([np.inf])
-    rows.close("grasp_turn", agent.name, ("cosine",), *bounds, len(rows.knots))
+    rows.close("grasp_turn", grasp.name, ("cosine",), *bounds, len(rows.knots))
 
 
-def _flat_hand(rows: _Rows, i: int, agent: Agent) -> None:
+def _flat_hand(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp) -> None:
     """A flat hand pushes and neither slides nor tips [N, Nm]."""
-    first = rows.layout.coordinates[i] + FORCE_SIZE + 3
-    for flat in flat_hand_rows(agent.grasp):
-        m = len(flat.labels)
+    for flat in flat_hand_rows(grasp):
+        first, m = own.wrench(grasp.frame).start, len(flat.labels)
         rows.add(rows.outputs_at(i, rows.knots, first + flat.components), flat.signs)
         rows.add(rows.outputs_at(i, rows.knots, np.full(m, first + PUSH)), flat.shares)
-        rows.close(flat.name, agent.name, flat.labels, np.zeros(m), np.full(m, np.inf), len(rows.knots))
+        rows.close(flat.name, grasp.name, flat.labels, np.zeros(m), np.full(m, np.inf), len(rows.knots))
 
 
 def served_rows(agents: tuple[Agent, ...], lifted: LiftedObject, tolerance: float) -> list[int]:
     """Return the rows of the balance to ask for: all six with a tolerance, as in the paper, else those served."""
-    unserved = None if any(agent.grasp.moments for agent in agents) else lifted.unserved_row()
+    moments = any(grasp.moments for agent in agents for grasp in agent.grasps)
+    unserved = None if moments else lifted.unserved_row()
     return [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
 
 

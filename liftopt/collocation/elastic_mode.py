@@ -41,11 +41,11 @@ NO_GAP, NO_SHARE = 1e-4, 1e-3
 
 @dataclass(frozen=True)
 class Violation:
-    """One limit of one joint or agent that is broken.
+    """One limit of one joint, agent or grasp that is broken.
 
     Attributes:
         constraint: name of the block of rows, see ``Block``.
-        who: joint, agent or coordinate of the object.
+        who: joint, agent, grasp or coordinate of the object.
         time: where it is broken most [s].
         amount: by how much there, in ``unit``.
         share: ``amount`` as a share of the limit; of a gap, in metres.
@@ -196,6 +196,7 @@ class SoftProblem(Problem):
     def _of(self, block: Block, amounts: Array, prices: Array) -> list[Violation]:
         """Return the violations of one block of rows (knots, labels)."""
         task, names = self.task, [agent.name for agent in self.team.agents]
+        grasps = {grasp.name: grasp for grasp in self.team.grasps}
         phase, who, unit = self.mesh.phase, list(block.labels), "m"
         share = amounts
         if block.name == "grasp_closure":
@@ -213,10 +214,10 @@ class SoftProblem(Problem):
             amounts = share * task.max_grasp_force
         elif block.name == "grasp_moment":
             share, who, unit = np.sqrt(1.0 + amounts) - 1.0, [block.who], "Nm"
-            amounts = share * self.team.agents[names.index(block.who)].grasp.max_moment
+            amounts = share * grasps[block.who].max_moment
         elif block.name == "grasp_turn":
             # The row is the angle's cosine.
-            limit, who, unit = self.team.agents[names.index(block.who)].grasp.max_turn, [block.who], "deg"
+            limit, who, unit = grasps[block.who].max_turn, [block.who], "deg"
             amounts = np.degrees(np.arccos(np.clip(np.cos(limit) - amounts, -1.0, 1.0)) - limit)
         elif block.name in ("friction", "pressure"):
             unit = "N" if block.name == "friction" else "Nm"

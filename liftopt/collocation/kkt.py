@@ -118,7 +118,7 @@ def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Arr
     if part < len(team.agents):
         agent = team.agents[part]
         found = _agent_knots(agent, y, period)
-        return found if agent.grasp.is_point_contact else add_agent_wrench(agent, y, *found)
+        return found if agent.pushes_at_a_point else add_agent_wrench(agent, y, *found)
     if all(grasp.is_point_contact for grasp in team.grasps):
         return _object_outputs(team.object, y, period), _object_slopes(team.object, y, period)
     # Forces and moments take turns in y.
@@ -131,7 +131,7 @@ def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Arr
 
 def _agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
     model = agent.reduced()
-    n, data, frame = model.nv, model.createData(), model.frames[model.getFrameId(agent.grasp_frame)]
+    n, data, frame = model.nv, model.createData(), model.frames[model.getFrameId(agent.hands[0])]
     q, v, a, f = y[:, :n], y[:, n : 2 * n] / period, y[:, 2 * n : 3 * n] / period**2, y[:, 3 * n : 3 * n + FORCE_SIZE]
     tau, point, slopes = np.zeros((len(y), n)), np.zeros((len(y), 3)), np.zeros((len(y), 6, n))
     jacobian, mass_matrix = np.zeros((len(y), n + FORCE_SIZE + 1, y.shape[1])), np.zeros((len(y), n, n))

@@ -23,12 +23,12 @@ def add_agent_wrench(agent: Agent, y: Array, outputs: Array, slopes: Array) -> t
         slopes: (K, n + 4, n_y) of these.
     """
     model = agent.reduced()
-    n, frame = model.nv, model.frames[model.getFrameId(agent.grasp_frame)]
+    n, frame = model.nv, model.frames[model.getFrameId(agent.hands[0])]
     data, carrier = model.createData(), frame.parentJoint
     axes, grip = np.zeros((len(y), n, 3)), np.zeros((len(y), 3, 3))
     for k in range(len(y)):
         axes[k] = pin.computeJointJacobians(model, data, y[k, :n])[3:].T
-        grip[k] = data.oMi[carrier].rotation @ frame.placement.rotation @ agent.grasp.R_hand_object
+        grip[k] = data.oMi[carrier].rotation @ frame.placement.rotation @ agent.grasps[0].R_hand_object
     axes *= bearing(model, carrier)[:, None]
     f, m, angles = y[:, 3 * n : 3 * n + 3], y[:, 3 * n + 3 : 3 * n + 6], y[:, 3 * n + 6 :]
     rotation = attitude(angles)[0]

@@ -14,6 +14,7 @@ from liftopt.multibody.trajectory import (
     AgentTrajectory,
     ObjectTrajectory,
     agent_trajectory,
+    grasps_of,
     limit_share,
     object_trajectory,
 )
@@ -48,8 +49,8 @@ def motion_at(problem: Problem, spline: RestToRestSpline, x: Array, phase: Array
     forces, moments = wrenches[..., :FORCE_SIZE], wrenches[..., FORCE_SIZE:]
     agents = []
     for i, agent in enumerate(problem.team.agents):
-        own = layout.columns(i)
-        agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, i], moments[:, i]))
+        own, grasps = layout.columns(i), list(layout.grasps_of(i))
+        agents.append(agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, grasps], moments[:, grasps]))
     own = layout.columns(layout.n_agents)
     lifted = object_trajectory(problem.team.object, q[:, own], v[:, own], a[:, own], forces, moments)
     return Motion(phase * period, tuple(agents), lifted)
@@ -73,7 +74,10 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
     terms = {name: float(weights @ (tau**2).sum(axis=1)) for name, tau in torques.items()}
     acceleration = sum((agent.a[:, agent.moving] ** 2).sum(axis=1) for agent in motion.agents)
     acceleration = acceleration + (motion.object.pose_acceleration**2).sum(axis=1)
-    contact = [np.hstack([agent.grasp_force, agent.grasp_moment / agent.grasp.breadth]) for agent in motion.agents]
+    contact = [
+        np.hstack([agent.grasp_force[:, own], agent.grasp_moment[:, own] / grasp.breadth])
+        for _, agent, own, grasp in grasps_of(motion.agents)
+    ]
     force = np.sum([(each**2).sum(axis=1) for each in contact], axis=0)
     terms |= {"acceleration": task.pace * float(weights @ acceleration), "force": float(weights @ force)}
     if "range" in (counted := objective_weights(problem)):

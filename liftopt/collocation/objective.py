@@ -58,9 +58,11 @@ def agent_weights(task: LiftTask, i: int, agent: Agent, n_y: int, posture_weight
     """
     n, period = len(agent.posture), task.duration
     variable = _motion_weights(task, n, n_y, posture_weight)
-    variable[3 * n : 3 * n + FORCE_SIZE] = task.force_weight * period
-    moments = variable[3 * n + FORCE_SIZE : 3 * n + WRENCH_SIZE]
-    moments[:] = task.force_weight * period / agent.grasp.breadth**2
+    room = FORCE_SIZE if agent.pushes_at_a_point else WRENCH_SIZE
+    for grasp in agent.grasps:
+        first = 3 * n + room * agent.hands.index(grasp.frame)
+        variable[first : first + FORCE_SIZE] = task.force_weight * period
+        variable[first + FORCE_SIZE : first + room] = task.force_weight * period / grasp.breadth**2
     effort = np.full(n, task.agent_weights[i] * period)
     below, above = (effort / unit**2 for unit in torque_units(agent.limits)) if task.shares else (effort, effort)
     return Weights(above, below, variable, _range(agent.comfort, task.range_weight * period))

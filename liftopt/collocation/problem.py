@@ -35,7 +35,7 @@ class Team:
     """Agents, the object they hold, and the kernels of their dynamics.
 
     Attributes:
-        agents: in the order of the object's grasp frames.
+        agents: their grasps in the order of the object's grasp frames.
         object: the object.
         topologies: of the agents and then of the object, with the values of their parameters.
         kernels: in the same order.
@@ -56,7 +56,7 @@ class Team:
         """Load or compile the kernels.
 
         Args:
-            agents: in the order of the object's grasp frames.
+            agents: their grasps in the order of the object's grasp frames.
             lifted: the object.
             progress: called with a line of text when that takes long.
             like: a team whose kernels are used again if they fit.
@@ -76,14 +76,9 @@ class Team:
         return tuple(topology.signature() for topology in self.topologies)
 
     @property
-    def coordinates(self) -> tuple[int, ...]:
-        """Number of moving joints of each agent."""
-        return tuple(len(agent.posture) for agent in self.agents)
-
-    @property
     def grasps(self) -> tuple[Grasp, ...]:
-        """What each agent's hold transmits."""
-        return tuple(agent.grasp for agent in self.agents)
+        """All grasps, in the order of the agents and of each agent's own."""
+        return tuple(grasp for agent in self.agents for grasp in agent.grasps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +118,7 @@ class Problem:
     @cached_property
     def layout(self) -> Layout:
         """Positions of the unknowns."""
-        return Layout.on(self.mesh, self.team.coordinates, self.team.grasps)
+        return Layout.on(self.mesh, self.team.agents)
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
@@ -207,8 +202,9 @@ class Problem:
         for i, agent in enumerate(self.team.agents):
             lower[layout.control[:, layout.columns(i)]] = agent.limits.q_lower
             upper[layout.control[:, layout.columns(i)]] = agent.limits.q_upper
-            moment = layout.force[:, layout.force_columns(i)][:, FORCE_SIZE:]
-            lower[moment], upper[moment] = -agent.grasp.max_moment, agent.grasp.max_moment
+        for g, grasp in enumerate(layout.grasps):
+            moment = layout.force[:, layout.force_columns(g)][:, FORCE_SIZE:]
+            lower[moment], upper[moment] = -grasp.max_moment, grasp.max_moment
         pose = layout.control[:, layout.columns(layout.n_agents)]
         lower[pose], upper[pose] = task.pose_lower, task.pose_upper
         for block, fixed in ((0, task.start), (-1, task.end)):
@@ -238,12 +234,13 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
     """Return what to generate the kernels of the agents and then of the object from."""
     requests: list[tuple[Any, Topology]] = []
     for agent in agents:
-        model, frames, grasp = agent.reduced(), (agent.grasp_frame,), agent.grasp
-        if grasp.is_point_contact:
-            requests.append((agent_functions, Topology.of(model, frames)))
+        model = agent.reduced()
+        if agent.pushes_at_a_point:
+            requests.append((agent_functions, Topology.of(model, agent.hands)))
         else:
-            requests.append((wrench_agent_functions, WrenchTopology.holding(model, frames, grasp.R_hand_object)))
-    if all(agent.grasp.is_point_contact for agent in agents):
+            grips = [grasp.R_hand_object for grasp in agent.grasps]
+            requests.append((wrench_agent_functions, WrenchTopology.holding(model, agent.hands, *grips)))
+    if all(grasp.is_point_contact for agent in agents for grasp in agent.grasps):
         requests.append((object_functions, Topology.of(lifted.model, lifted.grasp_frames)))
     else:
         requests.append((wrench_object_functions, WrenchTopology.holding(lifted.model, lifted.grasp_frames)))
@@ -252,11 +249,12 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
 
 def _check(agents: tuple[Agent, ...], lifted: LiftedObject) -> None:
     """Refuse models that the equations do not hold for."""
-    if len(agents) != len(lifted.grasp_frames):
+    grasps = [grasp for agent in agents for grasp in agent.grasps]
+    if len(grasps) != len(lifted.grasp_frames):
         raise ModelError(
-            f"{lifted.name}: {len(lifted.grasp_frames)} grasp frames for {len(agents)} agents; give one each"
+            f"{lifted.name}: {len(lifted.grasp_frames)} grasp frames for {len(grasps)} grasps; give one each"
         )
-    if not any(agent.grasp.moments for agent in agents):
+    if not any(grasp.moments for grasp in grasps):
         lifted.unserved_row()  # refuses grasps at one point, which could hold nothing
     if np.abs(lifted.model.inertias[1].lever).max() > STRUCTURAL_ZERO:
         raise ModelError(f"{lifted.name}: its body frame must be at its centre of mass")

@@ -21,7 +21,7 @@ TABLE_MASS, TABLE_DEPTH, TABLE_WIDTH, TABLE_HEIGHT = 2.0, 0.45, 0.31, 0.02  # kg
 def default_human() -> CheckedSystem:
     """Return the default subject, who holds at the origin of the last DH frame."""
     agent = human_agent(SUBJECT)
-    return CheckedSystem(human_chain(SUBJECT), agent.model, human_root(), (agent.grasp_frame,), np.zeros((1, 3)))
+    return CheckedSystem(human_chain(SUBJECT), agent.model, human_root(), agent.hands, np.zeros((1, 3)))
 
 
 def default_robot() -> CheckedSystem:
@@ -34,7 +34,7 @@ def default_robot() -> CheckedSystem:
         tool_mass=TOOL_MASS,
     )
     root = sawyer_root(facing(STANDING_DISTANCE))
-    return CheckedSystem(chain, agent.model, root, (agent.grasp_frame,), np.zeros((1, 3)))
+    return CheckedSystem(chain, agent.model, root, agent.hands, np.zeros((1, 3)))
 
 
 def default_table() -> CheckedSystem:

@@ -19,7 +19,7 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
-from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state
+from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, free_flyer_state, grasps_of
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
@@ -95,18 +95,19 @@ def unexplained(books: tuple[EnergyBooks, ...]) -> float:
 
 
 def _agent(model: Agent, agent: AgentTrajectory, time: Array, factor: int) -> EnergyBooks:
-    energy, grip = np.zeros(len(time)), np.zeros((len(time), 6))
-    data, frame = model.model.createData(), model.model.getFrameId(model.grasp_frame)
+    energy, grip = np.zeros(len(time)), np.zeros((len(time), len(model.grasps), 6))
+    data, frames = model.model.createData(), [model.model.getFrameId(grasp.frame) for grasp in model.grasps]
     for k in range(len(time)):
         energy[k] = pin.computeMechanicalEnergy(model.model, data, agent.q[k], agent.v[k])
         pin.forwardKinematics(model.model, data, agent.q[k], agent.v[k])
-        grip[k] = pin.getFrameVelocity(model.model, data, frame, pin.LOCAL_WORLD_ALIGNED).vector
+        for own, frame in enumerate(frames):
+            grip[k, own] = pin.getFrameVelocity(model.model, data, frame, pin.LOCAL_WORLD_ALIGNED).vector
     work = {
         "torques": _integral((agent.tau * agent.v).sum(axis=1), time, factor),
-        "grasp forces": _integral(-(agent.grasp_force * grip[:, :3]).sum(axis=1), time, factor),
+        "grasp forces": _integral(-(agent.grasp_force * grip[..., :3]).sum(axis=(1, 2)), time, factor),
     }
-    if agent.grasp.moments:
-        work[TURNING] = _integral(-(agent.grasp_moment * grip[:, 3:]).sum(axis=1), time, factor)
+    if any(grasp.moments for grasp in agent.grasps):
+        work[TURNING] = _integral(-(agent.grasp_moment * grip[..., 3:]).sum(axis=(1, 2)), time, factor)
     return EnergyBooks(agent.name, (energy - energy[0])[::factor], work)
 
 
@@ -119,12 +120,12 @@ def _object(
         energy[k] = pin.computeMechanicalEnergy(model.model, data, q, v)
         unbalanced[k] = lifted.wrench[k, :3] @ lifted.velocity[k, :3] + lifted.wrench[k, 3:] @ v[3:]
     power, turning = np.zeros(len(time)), np.zeros(len(time))
-    for i, agent in enumerate(agents):
-        lever, spin = lifted.grasp_position[:, i] - lifted.pose[:, :3], lifted.velocity[:, 3:]
-        power += (agent.grasp_force * (lifted.velocity[:, :3] + np.cross(spin, lever))).sum(axis=1)
-        turning += (agent.grasp_moment * spin).sum(axis=1)
+    for g, agent, own, _ in grasps_of(agents):
+        lever, spin = lifted.grasp_position[:, g] - lifted.pose[:, :3], lifted.velocity[:, 3:]
+        power += (agent.grasp_force[:, own] * (lifted.velocity[:, :3] + np.cross(spin, lever))).sum(axis=1)
+        turning += (agent.grasp_moment[:, own] * spin).sum(axis=1)
     work = {"grasp forces": _integral(power, time, factor), "unbalanced": _integral(unbalanced, time, factor)}
-    if any(agent.grasp.moments for agent in agents):
+    if any(grasp.moments for *_, grasp in grasps_of(agents)):
         work[TURNING] = _integral(turning, time, factor)
     return EnergyBooks(lifted.name, (energy - energy[0])[::factor], work)
 

@@ -53,8 +53,8 @@ class Points:
 
     Attributes:
         q, v, a: (2 N + 1, n_q) of ``Coordinates`` [rad, m and per s, per s^2].
-        force: (2 N + 1, 3 agents) on the object, world axes [N].
-        moment: (2 N + 1, 3 agents that transmit moments) on the object about the grasp points, world axes [Nm].
+        force: (2 N + 1, 3 grasps) on the object, world axes [N].
+        moment: (2 N + 1, 3 grasps that transmit moments) on the object about the grasp points, world axes [Nm].
         tau: (2 N + 1, n_joints) [Nm].
     """
 
@@ -253,6 +253,7 @@ class HermiteSimpson:
         q = [*(getattr(limit, f"q_{side}") for limit in limits), pose[at.unlocked]]
         v = [*(sign * limit.velocity for limit in limits), sign * task.pose_velocity[at.unlocked]]
         a, force = np.full(at.n_q, sign * np.inf), np.full(at.n_force, sign * task.max_grasp_force)
-        moment = np.repeat([sign * self.agents[i].grasp.max_moment for i in at.turning], FORCE_SIZE)
+        turning = [grasp for agent in self.agents for grasp in agent.grasps if grasp.moments]
+        moment = np.repeat([sign * grasp.max_moment for grasp in turning], FORCE_SIZE)
         tau = [getattr(limit, f"tau_{side}") for limit in limits]
         return np.asarray(np.concatenate([*q, *v, a, force, moment, *tau]) / self.units, dtype=np.float64)

@@ -31,23 +31,26 @@ class Coordinates:
         joints: number of moving joints of each agent.
         unlocked: which of the object's six coordinates may move; those whose range is one value stay there.
         locked_pose: (6,) that value, 0 for the others.
-        turning: which agents transmit moments.
+        turning: which grasps of all transmit moments.
+        grasps: number of all grasps.
     """
 
     joints: tuple[int, ...]
     unlocked: npt.NDArray[np.int64]
     locked_pose: Array
     turning: tuple[int, ...]
+    grasps: int
 
     @staticmethod
     def of(agents: tuple[Agent, ...], task: LiftTask) -> Coordinates:
         """Read off who moves what."""
-        locked = task.pose_lower == task.pose_upper
+        locked, grasps = task.pose_lower == task.pose_upper, [grasp for agent in agents for grasp in agent.grasps]
         return Coordinates(
             tuple(len(agent.posture) for agent in agents),
             np.flatnonzero(~locked),
             np.where(locked, task.pose_lower, 0),
-            tuple(i for i, agent in enumerate(agents) if agent.grasp.moments),
+            tuple(g for g, grasp in enumerate(grasps) if grasp.moments),
+            len(grasps),
         )
 
     @property
@@ -63,7 +66,7 @@ class Coordinates:
     @property
     def n_force(self) -> int:
         """Number of components of the grasp forces."""
-        return FORCE_SIZE * len(self.joints)
+        return FORCE_SIZE * self.grasps
 
     @property
     def n_moment(self) -> int:
@@ -89,10 +92,10 @@ class Instant:
         dynamics: y -> (n_joints,) torques less those that the motion and the grasp reaction need [Nm].
         balance: y -> (6,) force, world axes, and moment, body axes, that the object's motion needs, less what the
             grasps give [N, Nm].
-        closure: q -> (3 agents,) each agent's grasp point less the object's [m].
-        grasp: y -> (agents,) squared norms of the grasp forces [N^2].
+        closure: q -> (3 grasps,) each grasp point less the object's [m].
+        grasp: y -> (grasps,) squared norms of the grasp forces [N^2].
         hold: y -> what the holds leave of their other limits, see ``room``; empty for grips at points.
-        workspace: q -> (agents with a half-space,) distance of the grasp point from its border [m].
+        workspace: q -> (grasps with a half-space,) distance of the grasp point from its border [m].
     """
 
     coordinates: Coordinates
@@ -108,25 +111,29 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
     """Write the equations down for agents that hold one object, in the order of its grasp frames."""
     at = Coordinates.of(agents, task)
     q, v, a, force, moment, tau = (ca.SX.sym(*each) for each in zip("qvafmt", at.sizes, strict=True))
-    forces, moments = ca.vertsplit(force, FORCE_SIZE), [ca.SX(FORCE_SIZE, 1)] * len(agents)
+    forces, moments = ca.vertsplit(force, FORCE_SIZE), [ca.SX(FORCE_SIZE, 1)] * at.grasps
     for i, transmitted in zip(at.turning, ca.vertsplit(moment, FORCE_SIZE), strict=True):
         moments[i] = transmitted
-    ends = np.cumsum([0, *at.joints])
-    own = [slice(int(first), int(last)) for first, last in pairwise(ends)]
-    needed, hands, grips = zip(
-        *(_agent(agent, q[s], v[s], a[s], f, m) for agent, s, f, m in zip(agents, own, forces, moments, strict=True)),
-        strict=True,
-    )
+    needed: list[Any] = []
+    hands: list[Any] = []
+    grips: list[Any] = []
+    for agent, (first, last) in zip(agents, pairwise(np.cumsum([0, *at.joints]).tolist()), strict=True):
+        s, held = slice(first, last), slice(len(hands), len(hands) + len(agent.grasps))
+        tau_needed, points, axes = _agent(agent, q[s], v[s], a[s], forces[held], moments[held])
+        needed.append(tau_needed)
+        hands += points
+        grips += axes
+    grasps, holders = zip(*((grasp, agent) for agent in agents for grasp in agent.grasps), strict=True)
     pose = [_six(at, x[at.n_joints :], constant) for x, constant in ((q, at.locked_pose), (v, 0.0), (a, 0.0))]
     balance, attitude, *edges = _object_equations(lifted)(*pose, force, ca.vertcat(*moments))
     left = [
         each
-        for agent, f, m, grip in zip(agents, forces, moments, grips, strict=True)
-        for each in room(agent.grasp, f, m, grip, attitude)
+        for grasp, f, m, grip in zip(grasps, forces, moments, grips, strict=True)
+        for each in room(grasp, f, m, grip, attitude)
     ]
     distances = [
         ca.dot(agent.workspace.normal, hand) - agent.workspace.offset
-        for agent, hand in zip(agents, hands, strict=True)
+        for agent, hand in zip(holders, hands, strict=True)
         if agent.workspace is not None
     ]
     y = ca.vertcat(q, v, a, force, moment, tau)
@@ -141,23 +148,28 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
     )
 
 
-def _agent(agent: Agent, q: Any, v: Any, a: Any, force: Any, moment: Any) -> tuple[Any, Any, Any]:
-    """Return the torques (n,) that an agent needs, its grasp point (3,) and its grip axes (3, 3) in the world."""
+def _agent(
+    agent: Agent, q: Any, v: Any, a: Any, forces: list[Any], moments: list[Any]
+) -> tuple[Any, list[Any], list[Any]]:
+    """Return the torques (n,) that an agent needs, its grasp points (3,) and their grip axes (3, 3) in the world."""
     import liftopt.pinocchio_casadi as cpin
 
     reduced = agent.reduced()
-    frame = reduced.frames[reduced.getFrameId(agent.grasp_frame)]
-    lever, joint = frame.placement.translation, frame.parentJoint
     model = cpin.Model(reduced)
     data = model.createData()
     cpin.forwardKinematics(model, data, q)
-    placement = data.oMi[joint]
-    reaction, twisting = (-ca.mtimes(placement.rotation.T, each) for each in (force, moment))
-    external = cpin.StdVec_Force([cpin.Force.Zero() for _ in range(reduced.njoints)])
-    external[joint] = cpin.Force(reaction, ca.cross(lever, reaction) + twisting)
-    tau = cpin.rnea(model, model.createData(), q, v, a, external)
-    grip = ca.mtimes(placement.rotation, frame.placement.rotation @ agent.grasp.R_hand_object)
-    return tau, placement.translation + ca.mtimes(placement.rotation, lever), grip
+    points, grips = [], []
+    loads = [ca.SX(6, 1) for _ in range(reduced.njoints)]
+    for grasp, force, moment in zip(agent.grasps, forces, moments, strict=True):
+        frame = reduced.frames[reduced.getFrameId(grasp.frame)]
+        lever, joint = frame.placement.translation, frame.parentJoint
+        placement = data.oMi[joint]
+        reaction, twisting = (-ca.mtimes(placement.rotation.T, each) for each in (force, moment))
+        loads[joint] += ca.vertcat(reaction, ca.cross(lever, reaction) + twisting)
+        points.append(placement.translation + ca.mtimes(placement.rotation, lever))
+        grips.append(ca.mtimes(placement.rotation, frame.placement.rotation @ grasp.R_hand_object))
+    external = cpin.StdVec_Force([cpin.Force(load[:3], load[3:]) for load in loads])
+    return cpin.rnea(model, model.createData(), q, v, a, external), points, grips
 
 
 def _object_equations(lifted: LiftedObject) -> Any:

@@ -21,8 +21,9 @@ def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: 
     total = task.acceleration_weight * task.pace * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
     # A moment takes a pair of contact forces, the hand's breadth apart.
     twists: Any = ca.vertsplit(moment, FORCE_SIZE)
-    for i, twist in zip(at.turning, twists, strict=True):
-        total += task.force_weight / agents[i].grasp.breadth ** 2 * ca.sum1(twist**2)
+    turning = [grasp for agent in agents for grasp in agent.grasps if grasp.moments]
+    for grasp, twist in zip(turning, twists, strict=True):
+        total += task.force_weight / grasp.breadth**2 * ca.sum1(twist**2)
     first = 0
     for agent, weight, n in zip(agents, task.agent_weights, at.joints, strict=True):
         own, limits = slice(first, first + n), agent.limits

@@ -15,6 +15,7 @@ from liftopt.crosscheck.mujoco_forward import BANDWIDTH, WINDOW, Deviation, Simu
 from liftopt.crosscheck.transcriptions import mesh_study
 from liftopt.crosscheck.transcriptions import render as render_study
 from liftopt.errors import InputError
+from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.checks import Check
 from liftopt.solution.solution import Solution
 from liftopt.types import Progress
@@ -82,7 +83,7 @@ def _forward(solution: Solution) -> Iterator[Check]:
     where = f"{windows.count} windows of {1e3 * WINDOW:g} ms"
     yield from _deviation(f"MuJoCo open loop, {name}", windows.deviation, where)
     yield Check("MuJoCo open loop, grasp forces", windows.force, GRASP_FORCE, "of the largest", where)
-    if not any(agent.grasp.moments for agent in solution.agents):
+    if not any(grasp.moments for *_, grasp in grasps_of(solution.agents)):
         unserved, turn = f"{name} turned, unserved moment left out", simulation.windows(serve=False).deviation.turn
         yield Check(f"MuJoCo open loop, {unserved}", turn, np.inf, "rad", where)
     yield from _deviation(f"MuJoCo with feedback, {name}", whole.deviation, f"whole lift, {BANDWIDTH:g} rad/s")
@@ -90,7 +91,7 @@ def _forward(solution: Solution) -> Iterator[Check]:
     share = float(whole.share[worst]) if np.isfinite(whole.deviation.joint) else np.inf
     most = f"{whole.joints[worst]}, {whole.torque[worst]:.3f} Nm; at most {whole.torque.max():.3f} Nm in any joint"
     yield Check("MuJoCo with feedback, torque added", share, FEEDBACK, "of its limit", most)
-    about = "about its x axis" if len(solution.agents) > 1 else "about its one grasp"
+    about = "about its x axis" if solution.object.grasp_position.shape[1] > 1 else "about its one grasp"
     yield Check(f"MuJoCo with feedback, moment added on the {name}", whole.moment, np.inf, "Nm", about)
 
 
@@ -106,7 +107,7 @@ def _energy(solution: Solution) -> Iterator[Check]:
     for before, now in zip(coarse, books, strict=True):
         order = f"1/{before.error / now.error:.1f} of that on half the panels" if now.error > 0.0 else ""
         yield Check(f"energy, work of torques and forces, {now.name}", now.relative, BOOKS, "relative", order)
-    if any(agent.grasp.moments for agent in solution.agents):
+    if any(grasp.moments for *_, grasp in grasps_of(solution.agents)):
         share = turned_in_hands(books)
         yield Check(
             "energy, moments on hands that turn", share, np.inf, "relative", "within their limits on the object"

@@ -84,9 +84,11 @@ def ball_motions(model: pin.Model, trajectory: AgentTrajectory) -> list[BallMoti
             here = data.oMi[j]
             rotation[i, k] = rest[i].T @ relative[i]
             axes[i, k] = [here.rotation.T @ slopes[3:, model.idx_vs[h]] for h in (j - 2, j - 1, j)]
-            lever = trajectory.grasp_position[k] - here.translation
-            held = cross(lever, trajectory.grasp_force[k]) + trajectory.grasp_moment[k]
-            moment[i, k] = data.f[j].angular + here.rotation.T @ held
+            moment[i, k] = data.f[j].angular
+            for own in _beyond(model, trajectory, j):
+                lever = trajectory.grasp_position[k, own] - here.translation
+                held = cross(lever, trajectory.grasp_force[k, own]) + trajectory.grasp_moment[k, own]
+                moment[i, k] += here.rotation.T @ held
     motions = []
     for i, j in enumerate(joints):
         columns = [model.idx_vs[h] for h in (j - 2, j - 1, j)]
@@ -95,6 +97,12 @@ def ball_motions(model: pin.Model, trajectory: AgentTrajectory) -> list[BallMoti
         velocity = np.einsum("kh,khc->kc", trajectory.v[:, columns], axes[i])
         motions.append(BallMotion(hinges, quaternion, velocity, moment[i], axes[i]))
     return motions
+
+
+def _beyond(model: pin.Model, trajectory: AgentTrajectory, joint: int) -> list[int]:
+    """Return which of an agent's grasps a joint carries."""
+    carriers = [model.frames[model.getFrameId(grasp.frame)].parentJoint for grasp in trajectory.grasps]
+    return [own for own, carrier in enumerate(carriers) if joint in model.supports[carrier].tolist()]
 
 
 def _relative_rotations(model: pin.Model, data: pin.Data, joints: Sequence[int]) -> list[Array]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from liftopt.multibody.mujoco_model import import_mujoco, joint_places, spec_of, states_of
+from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 
@@ -22,7 +23,7 @@ class InverseDynamics:
             wrench its motion needs less what the grasps give, force along world axes, moment about body axes.
         scale: (n,) what an error is relative to: the largest torque of the joint, the object's weight and its weight
             at half the span of the grasps; of a single grasp, at its distance from the centre of mass.
-        gap: largest distance of the agent's grasp point from where the solution has it [m]; 0 for the object.
+        gap: largest distance of a grasp point of the agent from where the solution has it [m]; 0 for the object.
     """
 
     name: str
@@ -57,25 +58,29 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     data, lifted = mujoco.MjData(model), solution.object
     states = states_of(model, solution.agents, lifted)
-    bodies = [model.body(f"{agent.name}_grasp").id for agent in solution.agents]
-    edges = [model.body(f"grasp_{agent.name}").id for agent in solution.agents]
+    grasps = list(grasps_of(solution.agents))
+    bodies = [model.body(grasp.frame).id for *_, grasp in grasps]
+    edges = [model.body(f"grasp_{grasp.name}").id for *_, grasp in grasps]
     top = model.body(lifted.name).id
-    found, gaps = np.zeros_like(states.tau), np.zeros(len(solution.agents))
+    found, gaps = np.zeros_like(states.tau), dict.fromkeys((agent.name for agent in solution.agents), 0.0)
     for k in range(len(solution.time)):
         data.qpos[:], data.qvel[:], data.qacc[:] = states.qpos[k], states.qvel[k], states.qacc[k]
         mujoco.mj_inverse(model, data)
         external = np.zeros(model.nv)
-        for i, agent in enumerate(solution.agents):
-            force, moment = agent.grasp_force[k], agent.grasp_moment[k]
+        for i, agent, own, _ in grasps:
+            force, moment = agent.grasp_force[k, own], agent.grasp_moment[k, own]
             mujoco.mj_applyFT(model, data, -force, -moment, data.xpos[bodies[i]], bodies[i], external)
             mujoco.mj_applyFT(model, data, force, moment, data.xpos[edges[i]], top, external)
-            gaps[i] = max(gaps[i], float(np.linalg.norm(data.xpos[bodies[i]] - agent.grasp_position[k])))
+            gap = float(np.linalg.norm(data.xpos[bodies[i]] - agent.grasp_position[k, own]))
+            gaps[agent.name] = max(gaps[agent.name], gap)
         found[k] = data.qfrc_inverse - external
     results = []
-    for gap, agent in zip(gaps, solution.agents, strict=True):
+    for agent in solution.agents:
         dofs = [dof for _, dof in joint_places(model, agent)]
         scale = np.maximum(np.abs(agent.tau).max(axis=0), np.finfo(float).tiny)
-        results.append(InverseDynamics(agent.name, agent.joint_names, agent.tau, found[:, dofs], scale, float(gap)))
+        results.append(
+            InverseDynamics(agent.name, agent.joint_names, agent.tau, found[:, dofs], scale, gaps[agent.name])
+        )
     weight = float(model.body_mass[top] * 9.81)
     points = lifted.grasp_position[0]
     apart = np.ptp(points, axis=0) / 2 if len(points) > 1 else points - lifted.pose[0, :3]

@@ -25,6 +25,7 @@ import numpy as np
 
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.multibody.mujoco_model import States, import_mujoco, spec_of, states_of
+from liftopt.multibody.trajectory import grasps_of
 from liftopt.scenario.build import agents_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
@@ -107,7 +108,7 @@ class Simulation:
                 worst = np.maximum(worst, self._advance(k, self._feedforward(k, serve)))
                 if np.isinf(worst).any():
                     break
-        peak = max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in self._dense.agents)
+        peak = max(float(np.linalg.norm(agent.grasp_force, axis=2).max()) for agent in self._dense.agents)
         return Windows(Deviation(*worst.tolist()), force / peak, len(starts))
 
     def follow(self) -> Followed:
@@ -175,9 +176,9 @@ class Simulation:
     def _moments(self) -> Array:
         """What grasps transmit to every body (K, bodies, 3), world axes [Nm]."""
         moments = np.zeros((len(self._dense.time), self._model.nbody, 3))
-        for agent in self._dense.agents:
-            moments[:, self._model.body(f"grasp_{agent.name}").id] = agent.grasp_moment
-            moments[:, self._model.body(f"{agent.name}_grasp").id] = -agent.grasp_moment
+        for _, agent, own, grasp in grasps_of(self._dense.agents):
+            moments[:, self._model.body(f"grasp_{grasp.name}").id] = agent.grasp_moment[:, own]
+            moments[:, self._model.body(grasp.frame).id] = -agent.grasp_moment[:, own]
         return moments
 
     @cached_property
@@ -212,13 +213,17 @@ class Simulation:
         return int(self._model.joint(f"{self.solution.object.name}_free").dofadr[0])
 
     @property
+    def _grasps(self) -> int:
+        return int(self.solution.object.grasp_position.shape[1])
+
+    @property
     def _roll(self) -> int:
         return self._body + 3
 
     @property
     def _turns(self) -> list[int]:
         """Where in qvel the object can turn about its grasp points: a single point leaves all three axes free."""
-        return [self._roll] if len(self.solution.agents) > 1 else [self._roll, self._roll + 1, self._roll + 2]
+        return [self._roll] if self._grasps > 1 else [self._roll, self._roll + 1, self._roll + 2]
 
     def _start(self, k: int, serve: bool) -> float:
         """Put the simulation on the solution; return by how much its grasp forces differ there [N]."""
@@ -229,8 +234,8 @@ class Simulation:
         data.qfrc_applied[self._roll] = self._dense.object.wrench[k, 3] * serve
         mujoco.mj_forward(self._model, data)
         # A constraint's force acts on its first body along world axes: on the agent, from the object.
-        forces = -data.efc_force.reshape(len(self._dense.agents), 3)
-        wanted = np.array([agent.grasp_force[k] for agent in self._dense.agents])
+        forces = -data.efc_force.reshape(self._grasps, 3)
+        wanted = np.concatenate([agent.grasp_force[k] for agent in self._dense.agents])
         return float(np.linalg.norm(forces - wanted, axis=1).max())
 
     def _feedforward(self, k: int, serve: bool) -> Array:

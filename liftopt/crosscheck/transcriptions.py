@@ -15,7 +15,7 @@ that demand is there on a coarse mesh already: the third witness.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -30,7 +30,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import nearest
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson, Optimum, Points
 from liftopt.crosscheck.instant import Coordinates
-from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory, grasps_of
 from liftopt.scenario.build import agents_of, motions_of, object_of, task_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
@@ -150,15 +150,23 @@ def points_of(motion: Motion, at: Coordinates) -> Points:
         at.select(joints("q"), lifted.pose),
         at.select(joints("v"), lifted.pose_velocity),
         at.select(joints("a"), lifted.pose_acceleration),
-        np.hstack([agent.grasp_force for agent in motion.agents]),
-        np.hstack([np.empty((len(motion.time), 0)), *(motion.agents[i].grasp_moment for i in at.turning)]),
+        np.hstack([agent.grasp_force.reshape(len(motion.time), -1) for agent in motion.agents]),
+        np.hstack(
+            [
+                np.empty((len(motion.time), 0)),
+                *(agent.grasp_moment[:, own] for _, agent, own, grasp in grasps_of(motion.agents) if grasp.moments),
+            ]
+        ),
         joints("tau"),
     )
 
 
-def _transmitted(agent: AgentTrajectory) -> tuple[Array, ...]:
-    """Return the force (K, 3) of a grasp, and its moment if it has one."""
-    return (agent.grasp_force, agent.grasp_moment) if agent.grasp.moments else (agent.grasp_force,)
+def _transmitted(agent: AgentTrajectory) -> Iterator[Array]:
+    """Give the force (K, 3) of each grasp, and its moment if it has one."""
+    for own, grasp in enumerate(agent.grasps):
+        yield agent.grasp_force[:, own]
+        if grasp.moments:
+            yield agent.grasp_moment[:, own]
 
 
 def _row(found: SolverResult, optimum: Optimum) -> MeshRow:

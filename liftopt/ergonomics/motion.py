@@ -9,7 +9,7 @@ import pinocchio as pin
 from scipy.signal import find_peaks
 
 from liftopt.ergonomics.lift import Lift, model_of
-from liftopt.ergonomics.limbs import Arm, grasps_of, holding_arms
+from liftopt.ergonomics.limbs import Arm, holding_arms
 from liftopt.ergonomics.posture import WRIST, posture_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
@@ -50,7 +50,7 @@ class Motion:
 def motion_of(lift: Lift, person: AgentTrajectory) -> Motion:
     """Return how a person moves at every time of a lift; a finer grid sees what is between the knots.
 
-    Of two arms that hold it is the right one.
+    Of two arms that hold, the right one is measured; the path is that of the middle between the hands.
     """
     arm, posture = holding_arms(person)[0], posture_of(lift, person)
     limb = posture.arm(arm.side)
@@ -59,7 +59,7 @@ def motion_of(lift: Lift, person: AgentTrajectory) -> Motion:
     elevation = np.arccos(np.clip(down, -1.0, 1.0))
     level = np.hypot(forward, sideways)
     bend = np.cos(np.radians(limb.wrist_flexion)) * np.cos(np.radians(limb.wrist_deviation))
-    path = person.grasp_position[:, grasps_of(person, arm)[0]]
+    path = person.p_world_hold
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     return Motion(
         elbow=limb.elbow_flexion,

@@ -81,12 +81,14 @@ class HalfSpace:
 
 @dataclass(frozen=True)
 class Grasp:
-    """What an agent's hold on the object transmits; by default a force at a point, in any direction (the paper's).
+    """One hold of an agent on the object; by default it transmits a force at a point, in any direction (the paper's).
 
     Where it transmits moments, the hand cannot turn freely on the object: its orientation has a limit too, counted from
     the one in which the hand's grip axes are the object's axes.
 
     Attributes:
+        name: what results call it: the agent's name, or agent and hand (``"human_right"``).
+        frame: name of the agent's frame that coincides with the object's grasp point.
         moments: whether it transmits a moment too.
         max_moment: largest norm of the moment about the grasp point [Nm].
         max_turn: largest angle of the hand from its reference orientation on the object, about any axis [rad].
@@ -96,6 +98,8 @@ class Grasp:
         friction: None for a grip; else a flat hand that only pushes along the object's z axis, with this coefficient.
     """
 
+    name: str
+    frame: str
     moments: bool = False
     max_moment: float = 0.0
     max_turn: float = np.pi
@@ -115,8 +119,27 @@ class Grasp:
 
 
 @dataclass(frozen=True)
+class Stance:
+    """How an agent stands that is not bolted down: on two soles that rest on the floor.
+
+    Axes are those of its base: the feet's origin on the floor, X ahead, Y to the left.
+
+    Attributes:
+        soles: of each sole, where it begins behind and ends ahead along X, and how far it reaches along Y [m].
+        friction: coefficient between soles and floor.
+        mass: of what rests on the floor and does not move, the feet [kg].
+        p_base_com: (3,) its centre of mass [m].
+    """
+
+    soles: tuple[tuple[float, float, float], ...]
+    friction: float
+    mass: float
+    p_base_com: Array
+
+
+@dataclass(frozen=True)
 class Agent:
-    """One who holds the object: a fixed-base chain that grasps it at a point.
+    """One who holds the object: a tree of links on a base, with a grasp or several.
 
     Attributes:
         name: prefix of its joint names (``"human"``, ``"robot"``).
@@ -124,12 +147,13 @@ class Agent:
         urdf: the very URDF text that the model was loaded from.
         model: Pinocchio model of that URDF, all joints; the base placement is in its root's fixed joint.
         locked_joints: names of the virtual joints held at zero (eq. 13); they are eliminated from the optimisation.
-        grasp_frame: name of the frame that coincides with the object's grasp point.
+        grasps: how it holds the object, one for each hand that does.
+        hands: names of all frames with which it could hold; what is generated for it has room for each of them.
         limits: of the joints that are not locked.
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
-        workspace: half-space that the grasp point must stay in, or None.
-        grasp: what its hold transmits.
+        workspace: half-space that its grasp points must stay in, or None.
         comfort: where its joints are at ease, or None for one who does not mind.
+        stance: how it stands; None where its base holds it whatever it does.
     """
 
     name: str
@@ -137,12 +161,23 @@ class Agent:
     urdf: str
     model: pin.Model
     locked_joints: tuple[str, ...]
-    grasp_frame: str
+    grasps: tuple[Grasp, ...]
+    hands: tuple[str, ...]
     limits: JointLimits
     posture: Array
     workspace: HalfSpace | None = None
-    grasp: Grasp = Grasp()
     comfort: Comfort | None = None
+    stance: Stance | None = None
+
+    @property
+    def is_simple(self) -> bool:
+        """Whether it is bolted down and has one hand, as the paper's agents."""
+        return len(self.hands) == 1 and self.stance is None
+
+    @property
+    def pushes_at_a_point(self) -> bool:
+        """Whether it is simple, and its hold a force at a point and no more."""
+        return self.is_simple and all(grasp.is_point_contact for grasp in self.grasps)
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
@@ -157,13 +192,13 @@ class Agent:
 
 @dataclass(frozen=True)
 class LiftedObject:
-    """The object: one rigid body with a free-flyer and one grasp frame for each agent, in the agents' order.
+    """The object: one rigid body with a free-flyer and a grasp frame for each grasp of each agent.
 
     Attributes:
         name: of the object (``"table"``).
         urdf: the very URDF text that the model was loaded from.
         model: Pinocchio model of that URDF with a free-flyer root; the body frame is at the centre of mass.
-        grasp_frames: names of the frames on the body, one for each agent.
+        grasp_frames: names of the frames on the body, in the order of the agents and of their grasps.
     """
 
     name: str

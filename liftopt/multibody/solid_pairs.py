@@ -74,19 +74,19 @@ def solid_pairs(
         pairs += _between(agent.kind, solids, other.kind, others)
     box = solids_of_object(lifted)
     for agent, solids in bodies:
-        holds = grasping_joint(agent)
-        pairs += _between(agent.kind, [solid for solid in solids if solid.joint != holds], OBJECT, box)
+        holds = grasping_joints(agent)
+        pairs += _between(agent.kind, [solid for solid in solids if solid.joint not in holds], OBJECT, box)
         pairs += _between(agent.kind, solids, OBSTACLE, obstacles)
-        pairs += _between(agent.kind, [solid for solid in solids if solid.joint == holds], FLOOR_KIND, [FLOOR])
+        pairs += _between(agent.kind, [solid for solid in solids if solid.joint in holds], FLOOR_KIND, [FLOOR])
     pairs += _between(OBJECT, box, OBSTACLE, obstacles)
     pairs += _between(OBJECT, box, FLOOR_KIND, [FLOOR])
     return tuple(pairs)
 
 
-def grasping_joint(agent: Agent) -> int:
-    """Return the joint of the reduced model that carries the frame an agent grasps with."""
+def grasping_joints(agent: Agent) -> frozenset[int]:
+    """Return the joints of the reduced model that carry the frames an agent grasps with."""
     model = agent.reduced()
-    return int(model.frames[model.getFrameId(agent.grasp_frame)].parentJoint)
+    return frozenset(int(model.frames[model.getFrameId(grasp.frame)].parentJoint) for grasp in agent.grasps)
 
 
 def _between(kind: str, solids: Sequence[Solid], other: str, others: Sequence[Solid]) -> Iterator[SolidPair]:

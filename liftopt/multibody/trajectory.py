@@ -6,6 +6,7 @@ kernels that the solver used.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -29,13 +30,14 @@ class AgentTrajectory:
         moving: (n,) False for the locked virtual joints.
         q, v, a: (K, n) position, velocity, acceleration [rad or m, per s, per s^2].
         tau: (K, n) generalised forces of RNEA with the grasp reaction [Nm or N].
-        grasp_force: (K, 3) force on the object, world axes [N].
-        grasp_moment: (K, 3) moment on the object about the grasp point, world axes [Nm]; 0 where the grasp has none.
-        grasp_position: (K, 3) the agent's grasp point in the world [m].
-        grip_rotation: (K, 3, 3) grip axes in the world: the object's if the hand is in its reference orientation.
+        grasp_force: (K, grasps, 3) force of each grasp on the object, world axes [N].
+        grasp_moment: (K, grasps, 3) moment on the object about the grasp point, world axes [Nm]; 0 where it has none.
+        grasp_position: (K, grasps, 3) the agent's grasp points in the world [m].
+        grip_rotation: (K, grasps, 3, 3) grip axes in the world: the object's if that hand is in its reference
+            orientation.
         ground_force, ground_moment: (K, 3) reaction of the ground on the agent at its base point, world axes.
         limits: of the moving joints.
-        grasp: what the hold transmits.
+        grasps: how it holds the object.
     """
 
     name: str
@@ -53,7 +55,17 @@ class AgentTrajectory:
     ground_force: Array
     ground_moment: Array
     limits: JointLimits
-    grasp: Grasp
+    grasps: tuple[Grasp, ...]
+
+    @property
+    def load(self) -> Array:
+        """Force (K, 3) of all its grasps together on the object, world axes [N]."""
+        return np.asarray(self.grasp_force.sum(axis=1))
+
+    @property
+    def p_world_hold(self) -> Array:
+        """Middle (K, 3) of its grasp points [m]."""
+        return np.asarray(self.grasp_position.mean(axis=1))
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
@@ -62,7 +74,7 @@ class AgentTrajectory:
 
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        constant = ("name", "kind", "joint_names", "moving", "limits", "grasp")
+        constant = ("name", "kind", "joint_names", "moving", "limits", "grasps")
         over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
         return replace(self, **over_time)
 
@@ -77,7 +89,7 @@ class ObjectTrajectory:
         pose_velocity, pose_acceleration: (K, 6) its rates.
         quaternion: (K, 4) x y z w.
         velocity, acceleration: (K, 6) linear then angular, world axes, at the centre of mass.
-        grasp_position: (K, agents, 3) its grasp points in the world [m].
+        grasp_position: (K, all agents' grasps, 3) its grasp points in the world [m].
         wrench: (K, 6) RNEA less what the grasps do: force along world axes [N], moment about body axes [Nm]; eq. 17.
     """
 
@@ -100,37 +112,52 @@ class ObjectTrajectory:
 def agent_trajectory(
     agent: Agent, q: Array, v: Array, a: Array, force: Array, moment: Array | None = None
 ) -> AgentTrajectory:
-    """Return the trajectory of an agent from its moving joints (K, n_moving), its force and moment (K, 3) there.
+    """Return the trajectory of an agent from its moving joints (K, n_moving), forces and moments (K, grasps, 3) there.
 
-    Without a moment there is none; both act on the object.
+    Without moments there are none; both act on the object. Those of one grasp may be (K, 3).
     """
     model, names = agent.model, tuple(list(agent.model.names)[1:])
     moving = np.array([name not in agent.locked_joints for name in names])
     full_q, full_v, full_a = (np.zeros((len(q), model.nv)) for _ in range(3))
     full_q[:, moving], full_v[:, moving], full_a[:, moving] = q, v, a
-    data, frame, force = model.createData(), model.frames[model.getFrameId(agent.grasp_frame)], np.array(force, float)
-    moment = np.zeros_like(force) if moment is None else np.array(moment, float)
-    carrier, lever, grip = frame.parentJoint, frame.placement.translation, np.zeros((len(q), 3, 3))
-    tau, point, root = np.zeros_like(full_q), np.zeros((len(q), 3)), np.zeros((len(q), 6))
+    data, frames = model.createData(), [model.frames[model.getFrameId(grasp.frame)] for grasp in agent.grasps]
+    shape = (len(q), len(frames), 3)
+    force = np.array(force, float).reshape(shape)
+    moment = np.zeros_like(force) if moment is None else np.array(moment, float).reshape(shape)
+    tau, point, root = np.zeros_like(full_q), np.zeros(shape), np.zeros((len(q), 6))
+    grip = np.zeros((*shape, 3))
     slopes = np.zeros((len(q), 6, model.nv))
     for k in range(len(q)):
         slopes[k] = pin.computeJointJacobians(model, data, full_q[k]).reshape(6, -1)  # of one joint it is flat
-        point[k] = data.oMi[carrier].act(lever)
-        grip[k] = data.oMi[carrier].rotation
+        for g, frame in enumerate(frames):
+            point[k, g] = data.oMi[frame.parentJoint].act(frame.placement.translation)
+            grip[k, g] = data.oMi[frame.parentJoint].rotation
         tau[k] = pin.rnea(model, data, full_q[k], full_v[k], full_a[k])
         # The wrench that the first joint transmits holds all that moves against gravity and its own motion; what is
         # fixed to the ground (a robot's pedestal) is not part of it.
         root[k] = data.oMi[1].act(data.f[1]).vector
-    # The Jacobians (linear, then angular) are about the world's origin, so the force has its moment about it.
-    wrench = np.hstack([force, cross(point, force) + moment])
-    tau += np.einsum("kci,kc->ki", slopes, wrench) * bearing(model, carrier)
     p_world_base = model.jointPlacements[1].translation
-    ground_moment = root[:, 3:] - cross(p_world_base, root[:, :3]) + cross(point - p_world_base, force) + moment
+    ground_force, ground_moment = root[:, :3], root[:, 3:] - cross(p_world_base, root[:, :3])
+    for g, (frame, grasp) in enumerate(zip(frames, agent.grasps, strict=True)):
+        f, m, p = force[:, g], moment[:, g], point[:, g]
+        # The Jacobians (linear, then angular) are about the world's origin, so the force has its moment about it.
+        wrench = np.hstack([f, cross(p, f) + m])
+        tau += np.einsum("kci,kc->ki", slopes, wrench) * bearing(model, frame.parentJoint)
+        grip[:, g] = grip[:, g] @ frame.placement.rotation @ grasp.R_hand_object
+        ground_force, ground_moment = ground_force + f, ground_moment + cross(p - p_world_base, f) + m
     return AgentTrajectory(
-        agent.name, agent.kind, names, moving, full_q, full_v, full_a, tau, force, moment, point,
-        grip @ frame.placement.rotation @ agent.grasp.R_hand_object,
-        root[:, :3] + force, ground_moment, agent.limits, agent.grasp,
+        agent.name, agent.kind, names, moving, full_q, full_v, full_a, tau, force, moment, point, grip,
+        ground_force, ground_moment, agent.limits, agent.grasps,
     )  # fmt: skip
+
+
+def grasps_of(agents: Sequence[AgentTrajectory]) -> Iterator[tuple[int, AgentTrajectory, int, Grasp]]:
+    """Give all grasps of all agents in order: its number among all, the agent, its number among the agent's, itself."""
+    number = 0
+    for agent in agents:
+        for own, grasp in enumerate(agent.grasps):
+            yield number, agent, own, grasp
+            number += 1
 
 
 def limit_share(agent: AgentTrajectory) -> Array:
@@ -152,7 +179,7 @@ def object_trajectory(
 ) -> ObjectTrajectory:
     """Return the object's trajectory from its six coordinates and rates (K, 6) and all grasps' forces and moments.
 
-    Both are (K, 3 agents); without moments there are none.
+    Both are (K, grasps, 3), or flat; without moments there are none.
     """
     model, data = lifted.model, lifted.model.createData()
     frames = [model.getFrameId(name) for name in lifted.grasp_frames]

@@ -48,8 +48,9 @@ def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = No
     place = Placement.at(*stand)
     if isinstance(who, Person):
         friction = who.friction if who.contact == "flat" else None
-        grasp = replace(_grasp(who, HAND_UNDER_EDGE, stand.yaw_deg), friction=friction)
-        return replace(human_agent(subject_of(who), urdf, name=name, place=place), grasp=grasp)
+        person = human_agent(subject_of(who), urdf, name=name, place=place)
+        holds = [_grasp(grasp, who, HAND_UNDER_EDGE, stand.yaw_deg) for grasp in person.grasps]
+        return replace(person, grasps=tuple(replace(hold, friction=friction) for hold in holds))
     robot = sawyer_agent(
         place=place,
         base_height=who.height,
@@ -58,7 +59,7 @@ def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = No
         urdf=urdf,
         name=name,
     )
-    return replace(robot, grasp=_grasp(who, LEVEL_TOOL, stand.yaw_deg - 180.0))
+    return replace(robot, grasps=tuple(_grasp(grasp, who, LEVEL_TOOL, stand.yaw_deg - 180.0) for grasp in robot.grasps))
 
 
 def agent_key(scenario: Scenario, name: str) -> Hashable:
@@ -141,10 +142,11 @@ def motions_of(scenario: Scenario, intervals: int | None = None) -> RestToRestSp
     return RestToRestSpline(scenario.solver.intervals if intervals is None else intervals, scenario.task.rest)
 
 
-def _grasp(who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
-    """Return someone's grasp.
+def _grasp(grasp: Grasp, who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
+    """Return someone's grasp as the scenario has it.
 
     Args:
+        grasp: which one.
         who: holds the object.
         reference: (3, 3) the hand's orientation in the world on a level object, of one who stands as by default.
         turn_deg: how far from that it stands turned, about Z.
@@ -152,8 +154,9 @@ def _grasp(who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
     if turn_deg:
         reference = rotation_z(math.radians(turn_deg))[:3, :3] @ reference
     if who.grasp == "point":
-        return Grasp(R_hand_object=reference.T)
-    return Grasp(True, who.max_grasp_moment, math.radians(who.grasp_turn_deg), reference.T)
+        return replace(grasp, R_hand_object=reference.T)
+    turn = math.radians(who.grasp_turn_deg)
+    return replace(grasp, moments=True, max_moment=who.max_grasp_moment, max_turn=turn, R_hand_object=reference.T)
 
 
 def _pose(scenario: Scenario, place: GraspPlace | ObjectPlace) -> Array:

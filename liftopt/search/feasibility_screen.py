@@ -97,7 +97,7 @@ def _screen_end(
         best = closed[np.argmin(np.maximum(beyond.outside, beyond.twisted)[closed].max(axis=1))]
         return _outside(problem, name, beyond.outside[best], beyond.twisted[best]), near
     gaps = reach.gaps[nearest]
-    who = problem.team.agents[int(np.argmax(gaps))].name
+    who = problem.team.grasps[int(np.argmax(gaps))].name
     text = f"out of reach at the {name} of the lift: {whose(who)} grasp stays {gaps.max():.3f} m short"
     text += _range_of_motion(problem, kinematics, pose, again, deadline)
     return InfeasibilityReason("grasp_closure", who, float(gaps.max()), "m", text), near
@@ -105,13 +105,13 @@ def _screen_end(
 
 def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> InfeasibilityReason:
     if twisted.max() > outside.max():
-        agent = problem.team.agents[int(np.argmax(twisted))]
-        limit, lacking = agent.grasp.max_turn, float(twisted.max())
+        grasp = problem.team.grasps[int(np.argmax(twisted))]
+        limit, lacking = grasp.max_turn, float(twisted.max())
         amount = float(np.degrees(np.arccos(np.clip(np.cos(limit) - lacking, -1.0, 1.0)) - limit))
-        text = f"held back at the {name} of the lift: {whose(agent.name)} hand would have to turn "
+        text = f"held back at the {name} of the lift: {whose(grasp.name)} hand would have to turn "
         text += f"{amount:.0f} deg farther on the object than the {np.degrees(limit):.0f} deg allowed"
-        return InfeasibilityReason("grasp_turn", agent.name, amount, "deg", text)
-    who, amount = problem.team.agents[int(np.argmax(outside))].name, float(outside.max())
+        return InfeasibilityReason("grasp_turn", grasp.name, amount, "deg", text)
+    who, amount = problem.team.grasps[int(np.argmax(outside))].name, float(outside.max())
     text = f"held back at the {name} of the lift: {whose(who)} grasp would lie {amount:.3f} m outside its half-space"
     return InfeasibilityReason("workspace", who, amount, "m", text)
 
@@ -190,8 +190,8 @@ def _stronger(problem: Problem, factor: float) -> PostureSolver:
     for agent in problem.team.agents:
         limits = agent.limits
         stronger = replace(limits, tau_lower=factor * limits.tau_lower, tau_upper=factor * limits.tau_upper)
-        grasp = replace(agent.grasp, max_moment=factor * agent.grasp.max_moment)
-        agents.append(replace(agent, limits=stronger, grasp=grasp))
+        grasps = tuple(replace(grasp, max_moment=factor * grasp.max_moment) for grasp in agent.grasps)
+        agents.append(replace(agent, limits=stronger, grasps=grasps))
     task = replace(problem.task, max_grasp_force=factor * problem.task.max_grasp_force)
     return PostureSolver(replace(problem.team, agents=tuple(agents)), task)
 
@@ -206,13 +206,14 @@ def _uses(problem: Problem, posture: Posture) -> list[tuple[float, str, str]]:
     candidates = []
     for i, agent in enumerate(problem.team.agents):
         q = posture.coordinates[None, problem.layout.columns(i)]
-        wrench = problem.layout.wrenches(posture.force[None])[:, i]
-        force, moment = wrench[:, :FORCE_SIZE], wrench[:, FORCE_SIZE:]
+        wrench = problem.layout.wrenches(posture.force[None])[:, list(problem.layout.grasps_of(i))]
+        force, moment = wrench[..., :FORCE_SIZE], wrench[..., FORCE_SIZE:]
         still = agent_trajectory(agent, q, 0 * q, 0 * q, force, moment)
         tau = still.tau[0, still.moving]
         share = np.where(tau > 0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
         candidates += [(float(s), "torque", joint) for s, joint in zip(share, agent.moving_joints, strict=True)]
-        candidates.append((float(np.linalg.norm(force)) / problem.task.max_grasp_force, "grasp_force", agent.name))
-        if agent.grasp.moments:
-            candidates.append((float(np.linalg.norm(moment)) / agent.grasp.max_moment, "grasp_moment", agent.name))
+        for f, m, grasp in zip(force[0], moment[0], agent.grasps, strict=True):
+            candidates.append((float(np.linalg.norm(f)) / problem.task.max_grasp_force, "grasp_force", grasp.name))
+            if grasp.moments:
+                candidates.append((float(np.linalg.norm(m)) / grasp.max_moment, "grasp_moment", grasp.name))
     return candidates

@@ -37,9 +37,9 @@ class Reach:
 
     Attributes:
         coordinates: (B, n) joints of every agent, then the object's six coordinates.
-        gaps: (B, agents) distance left between each agent's grasp and its point on the object [m].
-        outside: (B, agents) how far each grasp is outside its half-space [m]; 0 where there is none.
-        twisted: (B, agents) how far the cosine of each hand's angle on the object is below that of its limit; 0 where
+        gaps: (B, grasps) distance left between each grasp and its point on the object [m].
+        outside: (B, grasps) how far each grasp is outside its half-space [m]; 0 where there is none.
+        twisted: (B, grasps) how far the cosine of each hand's angle on the object is below that of its limit; 0 where
             there is none.
     """
 
@@ -60,7 +60,7 @@ class InverseKinematics:
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
         blocks = problem.constraints.blocks
-        names = [agent.name for agent in problem.team.agents]
+        names = [grasp.name for grasp in problem.team.grasps]
         closure = [np.arange(b.rows.start, b.rows.stop) for b in blocks if b.name == "grasp_closure"]
         workspace = [b for name in ("workspace", "grasp_turn") for b in blocks if b.name == name]
         self._kept = [names.index(b.who) + len(names) * (b.name == "grasp_turn") for b in workspace]

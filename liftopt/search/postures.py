@@ -118,7 +118,7 @@ def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: Deadli
     model = problem.team.object.model
     weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
     share, layout = np.zeros(problem.layout.force.shape), problem.layout
-    share[:, [layout.force_columns(i).start + 2 for i in range(layout.n_agents)]] = weight / layout.n_agents
+    share[:, [layout.force_columns(g).start + 2 for g in range(len(layout.grasps))]] = weight / len(layout.grasps)
     start = problem.pack(rounded(coordinates)[None, :], share)
     result = solver.solve(start, deadline=deadline, problem=problem)
     if not result.converged:
@@ -162,10 +162,12 @@ def _place_in_hand(team: Team, which: int, q: Array) -> Array:
     model = agent.reduced()
     data = model.createData()
     pin.framesForwardKinematics(model, data, q)
-    p_world_hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
-    return np.asarray(
-        p_world_hand - lifted.frames[lifted.getFrameId(team.object.grasp_frames[which])].placement.translation
-    )
+    first = sum(len(each.grasps) for each in team.agents[:which])
+    places = []
+    for grasp, frame in zip(agent.grasps, team.object.grasp_frames[first:], strict=False):
+        p_world_hand = data.oMf[model.getFrameId(grasp.frame)].translation
+        places.append(p_world_hand - lifted.frames[lifted.getFrameId(frame)].placement.translation)
+    return np.asarray(np.mean(places, axis=0))
 
 
 def distinct(postures: Iterable[Posture | None], apart: float) -> list[Posture]:

@@ -31,7 +31,9 @@ def resample(solution: Solution, factor: int) -> Solution:
     agents, forces, moments = [], [], []
     for model, agent in zip(agents_of(solution.scenario, solution.urdfs), solution.agents, strict=True):
         q, v, a = motion_between(solution.time, agent.q, agent.v, agent.a, time)
-        force, moment = (linear(solution.time, each, time) for each in (agent.grasp_force, agent.grasp_moment))
+        force, moment = (
+            linear(solution.time, each.reshape(len(each), -1), time) for each in (agent.grasp_force, agent.grasp_moment)
+        )
         moving = agent.moving
         agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force, moment))
         forces.append(force)

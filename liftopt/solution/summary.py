@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from liftopt.multibody.joint_meanings import joint_meanings
-from liftopt.multibody.trajectory import GRAVITY, limit_share
+from liftopt.multibody.trajectory import GRAVITY, grasps_of, limit_share
 from liftopt.scenario.agents import Person
 from liftopt.solution.effort import effort_in
 from liftopt.solution.grasp_loads import shares, squeeze
@@ -121,21 +121,23 @@ def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
 
 
 def _grasp_force(solution: Solution) -> dict[str, Any]:
+    """Return the peak force of each grasp by name, and how hard they press the object together."""
     result: dict[str, Any] = {"limit_N": solution.scenario.limits.max_grasp_force, "agents": {}}
-    for agent in solution.agents:
-        result["agents"][agent.name] = _peak(np.linalg.norm(agent.grasp_force, axis=1), solution.time, "N")
-    if len(solution.agents) > 1:
+    for _, agent, own, grasp in grasps_of(solution.agents):
+        size = np.linalg.norm(agent.grasp_force[:, own], axis=1)
+        result["agents"][grasp.name] = _peak(size, solution.time, "N")
+    if len(result["agents"]) > 1:
         result["squeeze"] = _peak(squeeze(solution.agents), solution.time, "N")
     return result
 
 
 def _grasp_moment(solution: Solution) -> dict[str, Any]:
-    """Return the peak moment of each agent whose grasp transmits one, and its limit."""
+    """Return the peak moment of each grasp that transmits one, and its limit."""
     return {
-        agent.name: _peak(np.linalg.norm(agent.grasp_moment, axis=1), solution.time, "Nm")
-        | {"limit_Nm": _number(agent.grasp.max_moment)}
-        for agent in solution.agents
-        if agent.grasp.moments
+        grasp.name: _peak(np.linalg.norm(agent.grasp_moment[:, own], axis=1), solution.time, "Nm")
+        | {"limit_Nm": _number(grasp.max_moment)}
+        for _, agent, own, grasp in grasps_of(solution.agents)
+        if grasp.moments
     }
 
 

@@ -17,7 +17,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.multibody.solid_pairs import solid_pairs
 from liftopt.multibody.solids import Solid
-from liftopt.multibody.trajectory import angle_between, attitude, turned
+from liftopt.multibody.trajectory import angle_between, attitude, grasps_of, turned
 from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, TOUCH, Check, Verification
 from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
@@ -63,12 +63,13 @@ def verify(
 
 
 def _closure(name: str, motion: Motion, limit: float, at: npt.NDArray[np.int64]) -> Check:
-    """Eq. 16: distance of each agent's grasp point from the object's."""
-    gaps = [
-        np.linalg.norm(agent.grasp_position - motion.object.grasp_position[:, i], axis=1)[at]
-        for i, agent in enumerate(motion.agents)
-    ]
-    return _worst(name, np.stack(gaps, axis=1), limit, "m", [agent.name for agent in motion.agents], motion.time[at])
+    """Eq. 16: distance of each grasp point from the object's."""
+    gaps, names = [], []
+    for g, agent, own, grasp in grasps_of(motion.agents):
+        apart = agent.grasp_position[:, own] - motion.object.grasp_position[:, g]
+        gaps.append(np.linalg.norm(apart, axis=1)[at])
+        names.append(grasp.name)
+    return _worst(name, np.stack(gaps, axis=1), limit, "m", names, motion.time[at])
 
 
 def _balance(problem: Problem, knots: Motion, fine: Motion) -> list[Check]:
@@ -101,21 +102,22 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         position.append(np.maximum(bounds.q_lower - q, q - bounds.q_upper))
         speed.append(np.abs(v) - bounds.velocity)
         torque.append(np.maximum(bounds.tau_lower - tau, tau - bounds.tau_upper))
-        force.append(np.linalg.norm(agent.grasp_force, axis=1) - task.max_grasp_force)
+        force.append(np.linalg.norm(agent.grasp_force, axis=2) - task.max_grasp_force)
     joints = [name for agent in motion.agents for name in agent.moving_joints]
     position.append(np.maximum(task.pose_lower - lifted.pose, lifted.pose - task.pose_upper))
     speed.append(np.abs(lifted.pose_velocity) - task.pose_velocity)
-    agents = [agent.name for agent in motion.agents]
+    grasps = [grasp.name for _, _, _, grasp in grasps_of(motion.agents)]
     checks = [
         _worst("position limits", np.hstack(position), limit, "SI", joints + names, motion.time),
         _worst("speed limits", np.hstack(speed), limit, "SI", joints + names, motion.time),
         _worst("torque limits", np.hstack(torque), limit, "Nm", joints, motion.time),
-        _worst("grasp force cap", np.stack(force, axis=1), limit, "N", agents, motion.time),
+        _worst("grasp force cap", np.hstack(force), limit, "N", grasps, motion.time),
     ]
     for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):
         if model.workspace is not None:
             short = model.workspace.offset - trajectory.grasp_position @ model.workspace.normal
-            checks.append(_worst("grasp in front", short[:, None], limit, "m", [model.name], motion.time))
+            names = [grasp.name for grasp in model.grasps]
+            checks.append(_worst("grasp in front", short, limit, "m", names, motion.time))
     checks += _holds(motion, limit)
     # np.maximum lets a NaN through where max would hide it.
     return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
@@ -124,18 +126,18 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
 def _holds(motion: Motion, limit: float) -> list[Check]:
     """Limits of grasps that transmit more than a force at a point: moment, angle on the object, friction."""
     checks, rotation = [], attitude(motion.object.pose[:, 3:])[0]
-    for agent in motion.agents:
-        grasp, own = agent.grasp, [agent.name]
+    for _, agent, own, grasp in grasps_of(motion.agents):
+        force, moment = agent.grasp_force[:, own], agent.grasp_moment[:, own]
         if grasp.moments:
-            excess = np.linalg.norm(agent.grasp_moment, axis=1) - grasp.max_moment
-            checks.append(_worst("grasp moment cap", excess[:, None], limit, "Nm", own, motion.time))
-            angle = angle_between(rotation, agent.grip_rotation) - grasp.max_turn
-            checks.append(_worst("hand on the object", angle[:, None], limit, "rad", own, motion.time))
+            excess = np.linalg.norm(moment, axis=1) - grasp.max_moment
+            checks.append(_worst("grasp moment cap", excess[:, None], limit, "Nm", [grasp.name], motion.time))
+            angle = angle_between(rotation, agent.grip_rotation[:, own]) - grasp.max_turn
+            checks.append(_worst("hand on the object", angle[:, None], limit, "rad", [grasp.name], motion.time))
         back = rotation.swapaxes(1, 2)
-        local = np.hstack([turned(back, agent.grasp_force), turned(back, agent.grasp_moment)])
+        local = np.hstack([turned(back, force), turned(back, moment)])
         for rows in flat_hand_rows(grasp):
             worst, unit = -rows.room(local), "N" if rows.name == "friction" else "Nm"
-            ways = [f"{agent.name} {label}" for label in rows.labels]
+            ways = [f"{grasp.name} {label}" for label in rows.labels]
             checks.append(_worst(f"{rows.name} of the hand", worst, limit, unit, ways, motion.time))
     return checks
 

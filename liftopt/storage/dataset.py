@@ -46,7 +46,7 @@ def _labels(solution: Solution) -> dict[str, tuple[str, ...]]:
         "xyz": ("x", "y", "z"),
         "quat": ("x", "y", "z", "w"),
         "twist": ("vx", "vy", "vz", "wx", "wy", "wz"),
-        "grasp": tuple(agent.name for agent in solution.agents),
+        "grasp": tuple(grasp.name for agent in solution.agents for grasp in agent.grasps),
         "pose": OBJECT_COORDINATES,
     }
 
@@ -88,12 +88,12 @@ def _of_object(solution: Solution) -> dict[str, Variable]:
 def _of_grasps(solution: Solution) -> dict[str, Variable]:
     lifted, dimensions = solution.object, ("time", "grasp", "xyz")
     force, moment = (
-        np.stack([getattr(agent, name) for agent in solution.agents], axis=1)
+        np.concatenate([getattr(agent, name) for agent in solution.agents], axis=1)
         for name in ("grasp_force", "grasp_moment")
     )
-    about = f"moment of each agent on the {lifted.name} about its grasp point, world axes; 0 for a point grasp"
+    about = f"moment of each grasp on the {lifted.name} about its grasp point, world axes; 0 for a point grasp"
     return {
-        "grasp_force": _variable(dimensions, force, "N", f"force of each agent on the {lifted.name}, world axes"),
+        "grasp_force": _variable(dimensions, force, "N", f"force of each grasp on the {lifted.name}, world axes"),
         "grasp_moment": _variable(dimensions, moment, "N m", about),
         "grasp_position": _variable(
             dimensions, lifted.grasp_position, "m", f"grasp points on the {lifted.name}, world"

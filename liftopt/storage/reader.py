@@ -86,7 +86,7 @@ def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dic
 def _check_models(file: Path, built: Sequence[Agent | LiftedObject], given: Sequence[Agent | LiftedObject]) -> None:
     """Raise InputError if the models of a result are not those of its scenario; small numbers may differ."""
     for expected, one in zip(built, given, strict=True):
-        frames = expected.grasp_frames if isinstance(expected, LiftedObject) else (expected.grasp_frame,)
+        frames = expected.grasp_frames if isinstance(expected, LiftedObject) else expected.hands
         if found := difference(one.model, expected.model, frames):
             why = f"the model of {one.name} is not that of the result's scenario: {found}; solve again"
             raise InputError(str(file), NO_VALUE, why)
@@ -109,14 +109,17 @@ def _solution(
         raise ValueError("time does not increase")
     if not np.allclose(time[[0, -1]], (0.0, scenario.duration), rtol=0.0, atol=SAME_TIME * scenario.duration):
         raise ValueError(f"it lasts from {time[0]:g} to {time[-1]:g} s, its scenario {scenario.duration:g} s")
-    forces = _array(data, "grasp_force", (knots, len(agents), 3))
+    forces = _array(data, "grasp_force", (knots, len(lifted.grasp_frames), 3))
     # Files from before there were moments have none.
     moments = _array(data, "grasp_moment", forces.shape) if "grasp_moment" in data else np.zeros_like(forces)
     solution = Solution(
         scenario=scenario,
         outcome=record.outcome,
         time=time,
-        agents=tuple(_agent(agent, data, forces[:, i], moments[:, i]) for i, agent in enumerate(agents)),
+        agents=tuple(
+            _agent(agent, data, *own)
+            for agent, *own in zip(agents, _split(agents, forces), _split(agents, moments), strict=True)
+        ),
         object=_object(lifted, data, forces.reshape(knots, -1), moments),
         urdfs=urdfs,
         objective=float(attributes["objective"]),
@@ -141,6 +144,11 @@ def _solution(
         # What follows from the motion is computed again rather than stored.
         clearance=clearance_of(between_knots(solution)) if solution.solved else None,
     )
+
+
+def _split(agents: Sequence[Agent], vectors: Array) -> list[Array]:
+    """Return each agent's own of what all grasps have (K, grasps, 3)."""
+    return np.split(vectors, np.cumsum([len(agent.grasps) for agent in agents])[:-1], axis=1)
 
 
 def _agent(agent: Agent, data: dict[str, Any], force: Array, moment: Array) -> AgentTrajectory:

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from liftopt.errors import InputError
 from liftopt.files.suggestions import did_you_mean, nearest
+from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.camera import in_perspective
@@ -102,8 +103,8 @@ def bodies_at(cast: Cast, parts: Sequence[Part], k: int, view: View | None = Non
 def _paths(cast: Cast, frames: int) -> list[Body]:
     """Return the paths of all hands over the first so many frames."""
     agents, found = cast.solution.agents, []
-    for agent in agents:
-        along = path_mesh(cast.playback.forces[agent.name].point[:frames])
+    for _, agent, _, grasp in grasps_of(agents):
+        along = path_mesh(cast.playback.forces[grasp.name].point[:frames])
         if along is not None:
             found.append(Body(along, colour_of(agents, agent), shadow=False))
     return found
@@ -113,8 +114,8 @@ def _arrows(cast: Cast, k: int) -> list[Body]:
     """Return the forces of all hands on the object at a frame."""
     agents, forces, found = cast.solution.agents, cast.playback.forces, []
     scale = metres_per_newton(force.force for force in forces.values())
-    for agent in agents:
-        arrow = arrow_mesh(forces[agent.name].point[k], scale * forces[agent.name].force[k])
+    for _, agent, _, grasp in grasps_of(agents):
+        arrow = arrow_mesh(forces[grasp.name].point[k], scale * forces[grasp.name].force[k])
         if arrow is not None:
             found.append(Body(arrow, colour_of(agents, agent), on_top=True))
     return found

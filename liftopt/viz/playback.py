@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.posture import TRUNK
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.multibody.agent import Agent
+from liftopt.multibody.agent import Agent, Grasp
 from liftopt.multibody.poses import joint_placements
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import agents_of
@@ -62,7 +62,7 @@ class Playback:
         time: (K,) [s].
         bodies: by joint name for what an agent moves, by its own name for the object; hands and grippers
             are bodies too.
-        forces: by agent.
+        forces: by grasp.
         zero: (4, 4) T_world_body in which what is drawn of a body is given: all joints at zero, or the
             identity for the object, palms, fingers and grippers, whose parts are given in their own frames.
         joints: names of the bodies that each agent moves, by agent.
@@ -113,7 +113,8 @@ def playback_at(solution: Solution, time: Array) -> Playback:
         holding = _holding(solution, track, bases[agent.name], placements, upright, T_world_object)
         arm = _free_arm(solution, track, bases[agent.name], placements, upright, T_world_object)
         bodies |= {name: _track(list_) for name, list_ in (placements | holding | arm).items()}
-        forces[agent.name] = _force(agent, track, knots, time, q)
+        for own, grasp in enumerate(agent.grasps):
+            forces[grasp.name] = _force(agent.model, grasp, track.grasp_force[:, own], knots, time, q)
         zero |= upright | dict.fromkeys(holding, np.eye(4))
         zero |= {name: upright[f"{agent.name}_{TRUNK}"] for name in arm}
         joints[agent.name] = (*placements, *holding, *arm)
@@ -178,14 +179,13 @@ def _object_placement(pose: Array) -> pin.SE3:
     return pin.SE3(roll @ pitch @ yaw, pose[:3])
 
 
-def _force(agent: Agent, track: AgentTrajectory, knots: Array, time: Array, q: Array) -> ForceTrack:
-    model = agent.model
-    data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+def _force(model: pin.Model, grasp: Grasp, at_knots: Array, knots: Array, time: Array, q: Array) -> ForceTrack:
+    data, frame = model.createData(), model.getFrameId(grasp.frame)
     points = np.zeros((len(time), 3))
     for k, row in enumerate(q):
         pin.forwardKinematics(model, data, row)
         points[k] = pin.updateFramePlacement(model, data, frame).translation
-    force = np.stack([np.interp(time, knots, track.grasp_force[:, i]) for i in range(3)], axis=1)
+    force = np.stack([np.interp(time, knots, at_knots[:, i]) for i in range(3)], axis=1)
     return ForceTrack(points, force)
 
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from liftopt.assessment.who import who_is
-from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.multibody.trajectory import AgentTrajectory, grasps_of
 from liftopt.solution.grasp_loads import shares
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes
@@ -19,15 +19,15 @@ COMPONENTS = ("x", "y", "z, up")
 
 
 def grasp_forces(lift: Lift) -> Figure:
-    """Return everybody's force on the object by component, and each one's share of the load."""
+    """Return the force of each grasp on the object by component, and each one's share of the load."""
     solution = lift.dense
-    agents = solution.agents
-    moments = [agent for agent in agents if agent.grasp.moments]
-    figure, grid = panels(len(agents) + 1 + bool(moments), height=1.75)
-    each, share = [line[0] for line in grid[: len(agents)]], grid[len(agents)][0]
+    agents, grasps = solution.agents, list(grasps_of(solution.agents))
+    moments = any(grasp.moments for *_, grasp in grasps)
+    figure, grid = panels(len(grasps) + 1 + moments, height=1.75)
+    each, share = [line[0] for line in grid[: len(grasps)]], grid[len(grasps)][0]
     cap = solution.scenario.limits.max_grasp_force
-    for axes, agent in zip(each, agents, strict=True):
-        _components(axes, lift, agent, cap)
+    for axes, (_, agent, own, _) in zip(each, grasps, strict=True):
+        _components(axes, lift, agent, own, cap)
     lows, highs = zip(*(axes.get_ylim() for axes in each), strict=True)
     for axes in each:  # one scale for all
         axes.set_ylim(min(lows), max(highs))
@@ -42,7 +42,7 @@ def grasp_forces(lift: Lift) -> Figure:
     if low >= 0.0 and high <= 100.0:
         share.set_yticks(range(0, 101, 25))
     if moments:
-        _moments(grid[len(agents) + 1][0], lift, moments)
+        _moments(grid[len(grasps) + 1][0], lift)
     time_axes(grid, float(solution.time[-1]))
     return figure
 
@@ -93,27 +93,29 @@ def object_motion(lift: Lift) -> Figure:
     return figure
 
 
-def _moments(axes: Axes, lift: Lift, agents: list[AgentTrajectory]) -> None:
-    names = [agent.name for agent in lift.dense.agents]
-    for agent in agents:
-        line, label = LINES[names.index(agent.name) % len(LINES)], f"{agent.name} (cap {agent.grasp.max_moment:g} Nm)"
-        draw(axes, lift.dense.time, np.linalg.norm(agent.grasp_moment, axis=1), line, label, lift.factor)
+def _moments(axes: Axes, lift: Lift) -> None:
+    turning = [entry for entry in grasps_of(lift.dense.agents) if entry[-1].moments]
+    for g, agent, own, grasp in turning:
+        line, label = LINES[g % len(LINES)], f"{grasp.name} (cap {grasp.max_moment:g} Nm)"
+        draw(axes, lift.dense.time, np.linalg.norm(agent.grasp_moment[:, own], axis=1), line, label, lift.factor)
     axes.set(title=f"Moment of the hands on the {lift.dense.object.name}, magnitude", ylabel="moment [Nm]")
-    legend_above(axes, len(agents))
+    legend_above(axes, len(turning))
 
 
-def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, cap: float) -> None:
-    time, agents = lift.dense.time, lift.dense.agents
+def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, own: int, cap: float) -> None:
+    time, force = lift.dense.time, agent.grasp_force[:, own]
+    called = who_is(agent, lift.dense.agents).called
+    if len(agent.grasps) > 1:
+        called = f"{agent.grasps[own].name.removeprefix(agent.name + '_')} hand of {called}"
     labels = PAIRED if stand_opposite(lift.dense.scenario) else COMPONENTS
-    for values, line, label in zip(agent.grasp_force.T, LINES, labels, strict=False):
+    for values, line, label in zip(force.T, LINES, labels, strict=False):
         draw(axes, time, values, line, label, lift.factor)
-    magnitude = np.linalg.norm(agent.grasp_force, axis=1)
+    magnitude = np.linalg.norm(force, axis=1)
     axes.plot(percent(time), magnitude, color=INK, linewidth=0.9, label="magnitude")
     axes.axhline(0.0, color=FAINT, linewidth=0.8, zorder=1)
     if magnitude.max() > 0.6 * cap:
         axes.axhline(cap, color=VERMILION, linewidth=1.0, linestyle=(0, (6, 2)))
     axes.set_title(
-        f"Force of {who_is(agent, agents).called} on the {lift.dense.object.name}: "
-        f"at most {magnitude.max():.0f} N (cap {cap:g} N)"
+        f"Force of {called} on the {lift.dense.object.name}: at most {magnitude.max():.0f} N (cap {cap:g} N)"
     )
     axes.set_ylabel("force [N]")

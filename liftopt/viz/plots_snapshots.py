@@ -49,15 +49,16 @@ def snapshots(lift: Lift) -> Figure:
     cast = Cast(solution, playback_at(lift.knots, solution.time[frames]), "/lift")
     facing = stand_opposite(solution.scenario)
     camera = _camera(cast, SIDE if facing else OBLIQUE)
-    key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=1).max()) for agent in solution.agents))
+    key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=2).max()) for agent in solution.agents))
     parts = parts_of(cast)
     for i, (axes, moment, k) in enumerate(zip(panels, MOMENTS, frames, strict=True)):
         axes.imshow(render(bodies_at(cast, parts, i), camera, PANEL), interpolation="antialiased")
         for agent, (color, head, _) in zip(solution.agents, cycle(ARROWS), strict=False):
-            path = camera.project(agent.grasp_position)[:, :2]
-            axes.plot(*path.T, color=color, linewidth=0.6, alpha=0.5)
-            axes.plot(*path[: k + 1].T, color=color, linewidth=1.0, linestyle=(0, (1, 1)), zorder=3)
-            _arrow(axes, camera, agent.grasp_position[k], KEY_LENGTH / key * agent.grasp_force[k], color, head)
+            for point, force in zip(agent.grasp_position.swapaxes(0, 1), agent.grasp_force.swapaxes(0, 1), strict=True):
+                path = camera.project(point)[:, :2]
+                axes.plot(*path.T, color=color, linewidth=0.6, alpha=0.5)
+                axes.plot(*path[: k + 1].T, color=color, linewidth=1.0, linestyle=(0, (1, 1)), zorder=3)
+                _arrow(axes, camera, point[k], KEY_LENGTH / key * force[k], color, head)
         axes.set_title(f"{100 * moment:.0f} %, {solution.time[k]:.2f} s", loc="center", fontsize=11)
         axes.set(xlim=(0, PANEL[0]), ylim=(PANEL[1], 0))
         axes.grid(False)

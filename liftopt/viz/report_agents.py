@@ -12,7 +12,7 @@ from liftopt.assessment.who import listed, who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
 from liftopt.multibody.joint_curves import human_curves, robot_curves
-from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
+from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory, grasps_of
 from liftopt.scenario.build import agents_of
 from liftopt.solution.finding import MATHEMATICS, Finding
 from liftopt.solution.solution import Solution
@@ -65,11 +65,14 @@ def reported(lift: Lift, agent: AgentTrajectory) -> Reported:
 def force_rows(lift: Lift, summary: dict[str, Any]) -> list[dict[str, str]]:
     """Return a row for each hand, for the squeeze between two, and for what the ground does to each person."""
     agents, forces, rows = lift.dense.agents, summary["grasp_force"], []
-    for agent in agents:
-        share, force = summary["load_share"]["agents"][agent.name], forces["agents"][agent.name]
+    for _, agent, own, grasp in grasps_of(agents):
+        share, force = summary["load_share"]["agents"][agent.name], forces["agents"][grasp.name]
         part = "\N{EM DASH}" if share["min"] is None else f"{100 * share['min']:.0f} to {100 * share['max']:.0f} %"
         size = f"{force['peak_N']:.1f} N (cap {forces['limit_N']:g} N)"
-        rows.append(_row(who_is(agent, agents).called.removeprefix("the "), part, size, force["at_s"]))
+        called = who_is(agent, agents).called.removeprefix("the ")
+        if len(agent.grasps) > 1:
+            called += f", {grasp.name.removeprefix(agent.name + '_')} hand"
+        rows.append(_row(called, "" if own else part, size, force["at_s"]))
     if "squeeze" in forces:
         squeeze = forces["squeeze"]
         rows.append(_row("squeeze between the grasps (+ presses)", "", f"{squeeze['peak_N']:+.1f} N", squeeze["at_s"]))

@@ -87,12 +87,12 @@ def lift_commands(cast: Cast, first: Cast | None = None) -> list[Command]:
         path = body_path(cast, part.body) + "/" + part.name
         commands.append(set_object(path, mesh, colour, opacity * part.opacity))
     for agent in cast.solution.agents:
-        name, colour = agent.name, colour_of(cast.solution.agents, agent)
-        force = cast.playback.forces[name]
-        commands += arrow_commands(f"{cast.root}/force/{name}", colour, opacity)
-        along = path_mesh(force.point)
-        if along is not None:
-            commands.append(set_object(f"{cast.root}/path/{name}", along, colour, opacity))
+        colour = colour_of(cast.solution.agents, agent)
+        for name in (grasp.name for grasp in agent.grasps):
+            commands += arrow_commands(f"{cast.root}/force/{name}", colour, opacity)
+            along = path_mesh(cast.playback.forces[name].point)
+            if along is not None:
+                commands.append(set_object(f"{cast.root}/path/{name}", along, colour, opacity))
     if nearest_at(cast.solution.clearance, cast.playback.time) is not None:
         commands += line_commands(f"{cast.root}/nearest", opacity)
     return commands

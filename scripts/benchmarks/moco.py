@@ -142,7 +142,7 @@ def _agent(agent: Agent, moved: AgentTrajectory) -> dict[str, Any]:
                 "tau": moved.tau[:, moved.moving][:, j].tolist(),
             }
         )
-    frame = chain.frames[chain.getFrameId(agent.grasp_frame)]
+    frame = chain.frames[chain.getFrameId(agent.grasps[0].frame)]
     return {
         "name": agent.name,
         "joints": joints,

@@ -68,7 +68,7 @@ def on_our_models(case: Case, found: dict[str, Any]) -> OnOurModels:
     force = _fitted(off, len(time), FORCE_SIZE * len(agents))
     moved, lifted = move(force)
     left, joints = np.abs(off(force)), sum(own.shape[1] for own in wanted)
-    gaps = [np.linalg.norm(agent.grasp_position - lifted.grasp_position[:, i], axis=1) for i, agent in enumerate(moved)]
+    gaps = [np.linalg.norm(agent.p_world_hold - lifted.grasp_position[:, i], axis=1) for i, agent in enumerate(moved)]
     return OnOurModels(
         objective=_objective(case, time, moved, lifted),
         closure=float(np.max(gaps)),
@@ -93,9 +93,9 @@ def _excesses(case: Case, moved: list[AgentTrajectory]) -> Iterator[Array]:
     for model, agent in zip(case.problem.team.agents, moved, strict=True):
         tau, limits = agent.tau[:, agent.moving], agent.limits
         yield np.maximum(limits.tau_lower - tau, tau - limits.tau_upper)
-        yield np.linalg.norm(agent.grasp_force, axis=1) - case.problem.task.max_grasp_force
+        yield np.linalg.norm(agent.load, axis=1) - case.problem.task.max_grasp_force
         if model.workspace is not None:
-            yield model.workspace.offset - agent.grasp_position @ model.workspace.normal
+            yield model.workspace.offset - agent.p_world_hold @ model.workspace.normal
 
 
 def _fitted(off: Any, times: int, size: int) -> Array:
@@ -111,7 +111,7 @@ def _objective(case: Case, time: Array, moved: list[AgentTrajectory], lifted: Ob
     integrand = weights["acceleration"] * sum(np.sum(a**2, axis=1) for a in accelerations)
     for agent in moved:
         integrand = integrand + weights[agent.name] * np.sum(agent.tau[:, agent.moving] ** 2, axis=1)
-        integrand = integrand + weights["force"] * np.sum(agent.grasp_force**2, axis=1)
+        integrand = integrand + weights["force"] * np.sum(agent.load**2, axis=1)
     simpson = np.ones(len(time))
     simpson[1:-1:2], simpson[2:-1:2] = 4.0, 2.0
     return float((time[1] - time[0]) / 3.0 * simpson @ integrand)

@@ -20,7 +20,7 @@ for mass, solution in zip(masses, solutions, strict=True):
 
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
 for name in ("human", "robot"):
-    peaks = [(solution[name].grasp_force ** 2).sum(axis=1).max() ** 0.5 for solution in solutions]
+    peaks = [(solution[name].load ** 2).sum(axis=1).max() ** 0.5 for solution in solutions]
     axes.plot(masses, peaks, "o-", label=name)
 axes.set(xlabel="mass of the box [kg]", ylabel="largest grasp force [N]", ylim=(0, None))
 axes.legend()

@@ -18,7 +18,7 @@ first = replanner.solve(scenario)
 print(first.status, f"{first.iterations} iterations")
 
 figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
-axes.plot(first.time, first["robot"].grasp_force[:, 2], label=f"{scenario.object.mass:g} kg")
+axes.plot(first.time, first["robot"].load[:, 2], label=f"{scenario.object.mass:g} kg")
 for mass in (2.2, 2.4, 2.6):
     began = time.perf_counter()
     plan = replanner.replan(scenario.replace({"object.mass": mass}))
@@ -28,7 +28,7 @@ for mass in (2.2, 2.4, 2.6):
         continue
     print(f"{mass:g} kg: {plan.result.iterations} iterations, {1e3 * took:.0f} ms, solved: {plan.solved}")
     robot = next(agent for agent in plan.at(first.time).agents if agent.name == "robot")
-    axes.plot(first.time, robot.grasp_force[:, 2], label=f"{mass:g} kg")
+    axes.plot(first.time, robot.load[:, 2], label=f"{mass:g} kg")
 axes.set(xlabel="time [s]", ylabel="the robot's force upwards [N]")
 axes.legend()
 plt.show()

@@ -26,7 +26,7 @@ pair = lo.Scenario(
 solution = lo.solve(pair)
 print(solution.status)
 for person in solution.persons:
-    print(person.name, f"{person.grasp_force[:, 2].mean():.1f} N upwards on average")
+    print(person.name, f"{person.load[:, 2].mean():.1f} N upwards on average")
 solution.picture("box.png")
 
 # %%

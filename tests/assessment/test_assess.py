@@ -53,7 +53,7 @@ def test_the_gravest_comes_first(heavy: Any) -> None:
 
 def test_a_lift_beyond_the_acgih_value_is_a_warning_for_the_person(heavy: Any) -> None:
     fine = between_knots(heavy.solution)
-    load = (fine.agents[0].grasp_force[:, 2] / GRAVITY).max()
+    load = (fine.agents[0].load[:, 2] / GRAVITY).max()
     (finding,) = _of(heavy.solution.assessment, "person.acgih")
     assert (finding.value, finding.limit) == (pytest.approx(load, rel=1e-12), 7.0)  # above the shoulder, 40 cm ahead
     assert finding.severity == "warning"
@@ -63,7 +63,7 @@ def test_a_lift_beyond_the_acgih_value_is_a_warning_for_the_person(heavy: Any) -
 
 def test_payload_is_gripper_and_share_of_the_load(heavy: Any) -> None:
     fine = between_knots(heavy.solution)
-    carried = 0.4 + (fine.agents[1].grasp_force[:, 2] / GRAVITY).max()
+    carried = 0.4 + (fine.agents[1].load[:, 2] / GRAVITY).max()
     (finding,) = _of(heavy.solution.assessment, "robot.payload")
     assert (finding.value, finding.limit) == (pytest.approx(carried, rel=1e-12), 4.0)
     assert finding.severity == "warning"
@@ -149,13 +149,13 @@ def test_hands_against_each_other_are_a_warning_from_the_objects_weight_on(light
 
 def _pressed(light: Solution, push: float) -> Solution:
     """Return the lift with forces of 10 N up from both and ``push`` along the line between the grasps."""
-    line = light.agents[1].grasp_position - light.agents[0].grasp_position
+    line = light.agents[1].p_world_hold - light.agents[0].p_world_hold
     line = line / np.linalg.norm(line, axis=1, keepdims=True)
     agents = []
     for agent, sign in zip(light.agents, (1.0, -1.0), strict=True):
         along = sign * push * line
         up = np.cross(np.cross(line, [0.0, 0.0, 10.0]), line)
-        agents.append(replace(agent, grasp_force=along + up))
+        agents.append(replace(agent, grasp_force=(along + up)[:, None]))
     return replace(light, agents=tuple(agents))
 
 
@@ -165,7 +165,7 @@ def test_one_who_presses_down_what_the_other_lifts_is_told(light: Solution, down
     """Of a table of 19.62 N one carries all and ``down`` on top, which the other presses down."""
     upward = np.array([0.0, 0.0, 1.0])
     agents = tuple(
-        replace(agent, grasp_force=np.tile(force * upward, (len(light.time), 1)))
+        replace(agent, grasp_force=np.tile(force * upward, (len(light.time), 1, 1)))
         for agent, force in zip(light.agents, (2.0 * GRAVITY + down, -down), strict=True)
     )
     (finding,) = _of(assess(replace(light, agents=agents)), "person.load_share")
@@ -177,7 +177,7 @@ def test_one_who_presses_down_what_the_other_lifts_is_told(light: Solution, down
 @pytest.mark.usefixtures("as_given")
 def test_grasp_force_at_its_cap_is_a_caution_and_beyond_it_a_warning(light: Solution) -> None:
     for agent, code in zip(light.agents, ("person.grasp_force", "robot.grasp_force"), strict=True):
-        largest = float(np.linalg.norm(agent.grasp_force, axis=1).max())
+        largest = float(np.linalg.norm(agent.load, axis=1).max())
         for cap, severity in ((largest, "caution"), (0.98 * largest, "warning"), (2.0 * largest, "info")):
             capped = replace(light, scenario=light.scenario.replace({"limits.max_grasp_force": cap}))
             (finding,) = _of(assess(capped), code)

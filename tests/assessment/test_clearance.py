@@ -109,7 +109,7 @@ def test_fingers_under_the_edge_need_room(light: Solution, top: float, room: flo
     under = {"name": "stand", "box": [0.6, 0.4, 0.1], "position": [0.6, 0.0, top - 0.05]}
     found = _of(_with(light, obstacles=[under]), "fingers")
     fine = between_knots(light)
-    assert fine["human"].grasp_position[0, 2] == pytest.approx(0.9)
+    assert fine["human"].p_world_hold[0, 2] == pytest.approx(0.9)
     if room >= FINGERS:
         assert not found
         return

@@ -34,17 +34,17 @@ def test_what_is_found_is_everybodys_own(people: Solution, robots: Solution) -> 
     """Peak of the grasp force, share of the load and load of the lifting guide, from their own trajectories."""
     for solution in (people, robots):
         fine = between_knots(solution)
-        total = sum(agent.grasp_force[:, 2] for agent in fine.agents)
+        total = sum(agent.load[:, 2] for agent in fine.agents)
         for agent in fine.agents:
             found = {finding.code: finding for finding in solution.assessment.about(agent.kind, agent.name)}
-            peak = np.linalg.norm(agent.grasp_force, axis=1).max()
+            peak = np.linalg.norm(agent.load, axis=1).max()
             assert found[f"{agent.kind}.grasp_force"].value == pytest.approx(peak, rel=1e-12)
             if agent.kind == "robot":
-                carried = 0.4 + (agent.grasp_force[:, 2] / GRAVITY).max()
+                carried = 0.4 + (agent.load[:, 2] / GRAVITY).max()
                 assert found["robot.payload"].value == pytest.approx(carried, rel=1e-12)
                 continue
-            assert found["person.acgih"].value == pytest.approx((agent.grasp_force[:, 2] / GRAVITY).max(), rel=1e-12)
-            assert found["person.load_share"].value == pytest.approx((agent.grasp_force[:, 2] / total).max(), rel=1e-12)
+            assert found["person.acgih"].value == pytest.approx((agent.load[:, 2] / GRAVITY).max(), rel=1e-12)
+            assert found["person.load_share"].value == pytest.approx((agent.load[:, 2] / total).max(), rel=1e-12)
 
 
 def test_messages_name_whose_they_are_where_there_are_several(people: Solution, robots: Solution) -> None:
@@ -86,7 +86,7 @@ def test_hands_of_three_work_against_each_other(robots: Solution) -> None:
     """A push of two against the third, put on top, is in the finding by as much."""
     push = np.zeros((3, 3))
     human, *others = robots.agents
-    along = [agent.grasp_position[0] - human.grasp_position[0] for agent in others]
+    along = [agent.p_world_hold[0] - human.p_world_hold[0] for agent in others]
     for i, line in enumerate(along, start=1):  # along two sides of the triangle: it moves nothing
         push[0] += 100.0 * line / np.linalg.norm(line)
         push[i] -= 100.0 * line / np.linalg.norm(line)

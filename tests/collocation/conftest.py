@@ -21,7 +21,7 @@ from liftopt.collocation.solvers.ipopt import Ipopt
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
-from liftopt.multibody.agent import Agent, HalfSpace, JointLimits, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, HalfSpace, JointLimits, LiftedObject
 from liftopt.search.initial_guess import InitialGuess
 
 
@@ -48,7 +48,8 @@ def chain_agent(seed: int, name: str = "arm") -> Agent:
         -2.0 * np.ones(n), 2.5 * np.ones(n), 3.0 * np.ones(n), -np.arange(60.0, 100.0, 10.0), 80.0 * np.ones(n)
     )
     workspace = HalfSpace(np.array([0.6, 0.0, 0.8]), -5.0)
-    return Agent(name, "robot", "", chain(seed), (), "tip", limits, 0.1 * np.arange(n), workspace)
+    holds, posture = (Grasp(name, "tip"),), 0.1 * np.arange(n)
+    return Agent(name, "robot", "", chain(seed), (), holds, ("tip",), limits, posture, workspace)
 
 
 def box(grasps: np.ndarray, mass: float = 3.0) -> LiftedObject:
@@ -218,7 +219,7 @@ def knot_functions(
     arm = chain_agent(3)
     built = {}
     for name, agent in (("human", human), ("sawyer", sawyer), ("arm", arm)):
-        topology = Topology.of(agent.reduced(), (agent.grasp_frame,))
+        topology = Topology.of(agent.reduced(), agent.hands)
         built[name] = (topology.model, topology, agent_functions(topology))
     for name, lifted in (
         ("table", table),

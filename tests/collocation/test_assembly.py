@@ -19,7 +19,7 @@ from liftopt.collocation.problem import Problem, Team
 from liftopt.collocation.solvers.result import Multipliers
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
-from liftopt.multibody.agent import Grasp, LiftedObject
+from liftopt.multibody.agent import Agent, LiftedObject
 
 Unknowns = Callable[[Problem, np.random.Generator], np.ndarray]
 Outputs = Callable[[pin.Model, tuple[str, ...], np.ndarray, float], np.ndarray]
@@ -72,7 +72,7 @@ class Plain:
     def _agent(self, i: int) -> tuple[np.ndarray, np.ndarray]:
         agent = self.problem.team.agents[i]
         model, columns = agent.reduced(), self.problem.layout.columns(i)
-        data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+        data, frame = model.createData(), model.getFrameId(agent.hands[0])
         tau, point = [], []
         for k in range(len(self.phase)):
             q = self.q[k, columns]
@@ -210,13 +210,13 @@ def test_layout_places_every_unknown_once(problem: Problem) -> None:
     assert (np.diff(layout.control[:, 0]) > 0).all() and (np.diff(layout.force[:, 0]) > 0).all()
 
 
-def test_layout_selects_knot_variables(rng: np.random.Generator) -> None:
+def test_layout_selects_knot_variables(make_arm: Callable[..., Agent], rng: np.random.Generator) -> None:
     """NumPy: basis times control points, and the forces as they are."""
     mesh = RestToRestSpline(7).mesh()
-    layout = Layout.on(mesh, (2, 3), (Grasp(), Grasp()))
+    layout = Layout.on(mesh, (make_arm(1), make_arm(2, "other")))
     x = rng.normal(size=layout.n_x)
     for part, (columns, forces) in enumerate(
-        ((slice(0, 2), slice(0, 3)), (slice(2, 5), slice(3, 6)), (slice(5, 11), slice(0, 6)))
+        ((slice(0, 4), slice(0, 3)), (slice(4, 8), slice(3, 6)), (slice(8, 14), slice(0, 6)))
     ):
         control = x[layout.control][:, columns]
         expected = np.hstack([*(basis @ control for basis in mesh.basis), x[layout.force][:, forces]])

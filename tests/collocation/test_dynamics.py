@@ -135,7 +135,7 @@ def test_balance_agrees_with_pinocchios_free_flyer_and_external_forces(
 
 
 def of(agent: Agent) -> Topology:
-    return Topology.of(agent.reduced(), (agent.grasp_frame,))
+    return Topology.of(agent.reduced(), agent.hands)
 
 
 @pytest.mark.parametrize("subject", [(1.60, 55.0, "female"), (2.0, 120.0, "male")])

@@ -144,7 +144,7 @@ def test_a_single_grasp_that_transmits_moments_holds(
     make_arm: Callable[..., Agent], make_box: Callable[..., LiftedObject], make_task: Callable[..., LiftTask]
 ) -> None:
     """Statics: a force and a moment at one point are a grasp map of rank 6."""
-    agent = replace(make_arm(1), grasp=Grasp(moments=True, max_moment=10.0))
+    agent = replace(make_arm(1), grasps=(Grasp("arm", "tip", moments=True, max_moment=10.0),))
     assert np.linalg.matrix_rank(np.hstack([grasp_map(EDGES[:1]), np.eye(6)[:, 3:]])) == 6
     problem = Problem(Team.of((agent,), make_box(EDGES[:1])), make_task(1), RestToRestSpline(6).mesh())
     (block,) = (block for block in problem.constraints.blocks if block.name == "balance")
@@ -168,5 +168,5 @@ def test_rows_served_are_the_rank_of_the_grasp_map(make_box: Callable[..., Lifte
 def test_grasps_that_do_not_match_the_agents_are_refused(
     make_arm: Callable[..., Agent], make_box: Callable[..., LiftedObject]
 ) -> None:
-    with pytest.raises(ModelError, match="2 grasp frames for 1 agents"):
+    with pytest.raises(ModelError, match="2 grasp frames for 1 grasps"):
         Team.of((make_arm(1),), make_box(EDGES))

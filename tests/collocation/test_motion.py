@@ -30,8 +30,8 @@ def test_rates_are_derivatives_and_forces_are_linear(small_lift: Problem, solved
     for i, agent in enumerate(now.agents):
         np.testing.assert_allclose(agent.v, (ahead.agents[i].q - behind.agents[i].q) / span, atol=1e-7)
         np.testing.assert_allclose(agent.a, (ahead.agents[i].v - behind.agents[i].v) / span, atol=1e-6)
-        force = at_knots.agents[i].grasp_force
-        np.testing.assert_allclose(agent.grasp_force, (force[1:] + force[:-1]) / 2, atol=1e-12)
+        force = at_knots.agents[i].load
+        np.testing.assert_allclose(agent.load, (force[1:] + force[:-1]) / 2, atol=1e-12)
     np.testing.assert_allclose(now.object.pose_velocity, (ahead.object.pose - behind.object.pose) / span, atol=1e-7)
 
 
@@ -40,6 +40,6 @@ def test_agents_and_object_meet_and_balance(small_lift: Problem, solved: SolverR
     spline = RestToRestSpline(10)
     motion = motion_at(small_lift, spline, solved.x, spline.phase)
     for i, agent in enumerate(motion.agents):
-        gap = agent.grasp_position - motion.object.grasp_position[:, i]
+        gap = agent.p_world_hold - motion.object.grasp_position[:, i]
         assert np.abs(gap[spline.closure_knots]).max() <= 1e-6
     assert np.abs(motion.object.wrench[:, [0, 1, 2, 4, 5]]).max() <= 1e-6

@@ -38,11 +38,11 @@ def grip() -> np.ndarray:
 @pytest.fixture(scope="module")
 def mixed(make_arm: Callable[..., Agent], make_box: Callable[..., LiftedObject], grip: np.ndarray) -> Iterator[Team]:
     """A flat hand that transmits moments and a point grasp of a box, on CasADi's virtual machine."""
-    flat = Grasp(True, 10.0, 0.5, grip, friction=0.4)
+    flat = Grasp("arm", "tip", True, 10.0, 0.5, grip, friction=0.4)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CC", "")
         patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
-        yield Team.of((replace(make_arm(1), grasp=flat), make_arm(2, "other")), make_box(POINTS))
+        yield Team.of((replace(make_arm(1), grasps=(flat,)), make_arm(2, "other")), make_box(POINTS))
 
 
 def test_agent_outputs_are_pinocchios(
@@ -126,7 +126,7 @@ def test_kkt_check_is_that_of_the_programme(mixed: Team, random_unknowns: Output
 def test_flat_hand_pushes_within_the_cone(rng: np.random.Generator) -> None:
     """Closed form: the pyramid lies in the cone, touches it at its edges, and the centre of pressure is in the hand."""
     friction, breadth = 0.4, 0.1
-    slide, tip = flat_hand_rows(Grasp(moments=True, friction=friction, breadth=breadth))
+    slide, tip = flat_hand_rows(Grasp("hand", "tip", moments=True, friction=friction, breadth=breadth))
     wrench = rng.normal(size=(4000, 6)) * [0.3, 0.3, 1.0, 0.05, 0.05, 0.05]
     inside = (slide.room(wrench) >= 0).all(axis=1)
     assert 100 < inside.sum() < 3000
@@ -136,7 +136,7 @@ def test_flat_hand_pushes_within_the_cone(rng: np.random.Generator) -> None:
     held = inside & (tip.room(wrench) >= 0).all(axis=1)
     pressure = wrench[held][:, [4, 3]] / wrench[held, 2:3]
     assert held.any() and np.abs(pressure).max() <= breadth / 2 + 1e-12
-    assert not flat_hand_rows(Grasp(moments=True))
+    assert not flat_hand_rows(Grasp("hand", "tip", moments=True))
 
 
 def test_inverse_kinematics_turns_the_hand(
@@ -151,7 +151,8 @@ def test_inverse_kinematics_turns_the_hand(
 
     limit, grips = np.radians(20.0), (HAND_UNDER_EDGE.T, LEVEL_TOOL.T)
     agents = tuple(
-        replace(agent, grasp=Grasp(True, 5.0, limit, grip)) for agent, grip in zip((human, sawyer), grips, strict=True)
+        replace(agent, grasps=(Grasp(agent.name, agent.hands[0], True, 5.0, limit, grip),))
+        for agent, grip in zip((human, sawyer), grips, strict=True)
     )
     problem = Problem(Team.of(agents, table), make_task(), Mesh.at_rest())
     rng, pose = np.random.default_rng(3), make_task().start
@@ -165,8 +166,8 @@ def test_inverse_kinematics_turns_the_hand(
             model = agent.reduced()
             data = model.createData()
             pin.framesForwardKinematics(model, data, coordinates[problem.layout.columns(i)])
-            hand = data.oMf[model.getFrameId(agent.grasp_frame)].rotation
-            assert np.linalg.norm(pin.log3(turned.T @ hand @ agent.grasp.R_hand_object)) <= limit + 1e-5
+            hand = data.oMf[model.getFrameId(agent.hands[0])].rotation
+            assert np.linalg.norm(pin.log3(turned.T @ hand @ agent.grasps[0].R_hand_object)) <= limit + 1e-5
 
 
 def _task() -> LiftTask:

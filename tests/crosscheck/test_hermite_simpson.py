@@ -84,7 +84,7 @@ def test_equations_are_those_of_pinocchio_in_double_precision(keys, free):
         arm = agent_trajectory(agent, q[:, own], v[:, own], a[:, own], f, m)
         tau[:, own], first = arm.tau[:, arm.moving], own.stop
         gap = np.asarray(written.closure(q.T))[3 * i : 3 * i + 3].T
-        np.testing.assert_allclose(gap, arm.grasp_position - table.grasp_position[:, i], atol=1e-12)
+        np.testing.assert_allclose(gap, arm.p_world_hold - table.grasp_position[:, i], atol=1e-12)
         held.append(_room(arm, attitude(pose[:, 3:])[0]))
     y = np.hstack([q, v, a, force, moment, tau]).T
     np.testing.assert_allclose(np.asarray(written.dynamics(y)), 0.0, atol=1e-10)
@@ -94,12 +94,12 @@ def test_equations_are_those_of_pinocchio_in_double_precision(keys, free):
 
 def _room(arm: AgentTrajectory, turn: Array) -> Array:
     """Return what a hold leaves of its limits, by what the verification of a solution takes."""
-    grasp, back, left = arm.grasp, turn.swapaxes(1, 2), [np.empty((len(turn), 0))]
+    (grasp,), back, left = arm.grasps, turn.swapaxes(1, 2), [np.empty((len(turn), 0))]
     if grasp.moments:
-        used = np.linalg.norm(arm.grasp_moment, axis=1) / grasp.max_moment
-        angle = angle_between(arm.grip_rotation, turn)
+        used = np.linalg.norm(arm.grasp_moment[:, 0], axis=1) / grasp.max_moment
+        angle = angle_between(arm.grip_rotation[:, 0], turn)
         left.append(np.stack([1 - used**2, np.cos(angle) - np.cos(grasp.max_turn)], axis=1))
-    wrench = np.hstack([turned(back, arm.grasp_force), turned(back, arm.grasp_moment)])
+    wrench = np.hstack([turned(back, arm.load), turned(back, arm.grasp_moment[:, 0])])
     units = {"friction": FORCE_UNIT, "pressure": MOMENT_UNIT}
     return np.hstack([*left, *(rows.room(wrench) / units[rows.name] for rows in flat_hand_rows(grasp))])
 

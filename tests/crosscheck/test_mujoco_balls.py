@@ -42,7 +42,7 @@ def test_body_is_where_the_hinges_put_it(solution):
         simulation._start(k, serve=True)
         mujoco.mj_kinematics(simulation._model, simulation._data)
         place = simulation._data.body("human_grasp").xpos
-        np.testing.assert_allclose(place, human.grasp_position[k], atol=1e-9)
+        np.testing.assert_allclose(place, human.p_world_hold[k], atol=1e-9)
 
 
 def test_velocity_is_that_of_the_rotation(solution):

@@ -40,7 +40,7 @@ def test_niosh_ends_of_the_ranges(changed: dict[str, float], name: str, wanted: 
 def test_niosh_takes_the_hands_place_and_the_persons_part_of_the_load(solution: Any) -> None:
     # Table 5: the hand is 40 cm ahead of the feet, from 90 to 140 cm; a level table is shared half and half at rest.
     equation = niosh(solution, solution["human"])
-    y = solution.agents[0].grasp_position[[0, -1], 1]
+    y = solution.agents[0].p_world_hold[[0, -1], 1]
     for end, vertical, side in ((equation.origin, 90.0, y[0]), (equation.destination, 140.0, y[1])):
         assert end.horizontal == pytest.approx(100 * np.hypot(0.4, side), abs=1e-4)
         assert (end.vertical, end.travel) == pytest.approx((vertical, 50.0), abs=1e-4)

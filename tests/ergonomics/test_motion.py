@@ -28,7 +28,7 @@ def travelled(lift: Solution, pulses: float, aside: float = 0.0) -> object:
     share = lift.time / lift.time[-1]
     height = share - np.sin(2 * np.pi * pulses * share) / (2 * np.pi * pulses)
     path = np.stack([aside * np.sin(np.pi * height), 0.0 * height, height], axis=1)
-    return replace(lift.persons[0], grasp_position=path)
+    return replace(lift.persons[0], grasp_position=path[:, None])
 
 
 def test_a_hanging_arm_is_straight_and_low(moved: Callable[..., Motion]) -> None:
@@ -70,7 +70,7 @@ def test_peaks_of_the_hands_speed(posed: Callable[..., Solution], pulses: int) -
     time = np.linspace(0.0, 2.0, 201)
     lift = replace(lift, time=time, agents=tuple(agent.every(1) for agent in lift.agents))
     person = replace(travelled(lift, pulses), q=np.zeros((201, lift.persons[0].q.shape[1])))
-    person = replace(person, grasp_force=np.zeros((201, 3)))
+    person = replace(person, grasp_force=np.zeros((201, 1, 3)))
     assert motion_of(lift, person).speed_peaks == pulses
 
 

@@ -24,7 +24,7 @@ def test_where_a_person_stands_and_faces_changes_nothing(solution: Any, heading:
     stand = {"human.position": [0.3, -0.2], "human.heading_deg": heading}
     scenario = solution.scenario.replace({**stand, "task.start": place, "task.end": place})
     agent, moving = agent_of(scenario, "human"), human.moving
-    force = human.grasp_force @ rotation_z(np.radians(heading))[:3, :3].T
+    force = human.load @ rotation_z(np.radians(heading))[:3, :3].T
     turned = agent_trajectory(agent, human.q[:, moving], human.v[:, moving], human.a[:, moving], force)
     elsewhere = replace(solution, scenario=scenario, urdfs={}, agents=(turned, solution.agents[1]))
     here, there = posture_of(solution, human), posture_of(elsewhere, turned)
@@ -43,7 +43,7 @@ def test_each_persons_measures_are_their_own(team_solution: Callable[[str], Any]
     assert anna.niosh.origin.horizontal == pytest.approx(ben.niosh.origin.horizontal, abs=1.0)
     assert anna.niosh.origin.asymmetry == pytest.approx(ben.niosh.origin.asymmetry, abs=1.0)
     for person, found in zip(lift.persons, (anna, ben), strict=True):
-        assert found.niosh.largest_load == pytest.approx(person.grasp_force[:, 2].max() / 9.81)
+        assert found.niosh.largest_load == pytest.approx(person.load[:, 2].max() / 9.81)
         share = np.abs(person.tau[:, person.moving]) / person.limits.effort
         assert max(use.peak for use in found.strength) >= share.max()
         assert [use.joint for use in found.strength] == [f"Q{i}" for i in range(1, 11)]

@@ -67,7 +67,7 @@ def test_at_rest_the_plans_of_both_robots_hold_what_is_theirs(robots: Solution) 
         assert borne["near"] == pytest.approx(borne["far"], abs=1.0)
         assert human == pytest.approx(weight / 2, rel=0.02)
     for name, plan in plans.items():
-        np.testing.assert_allclose(plan.tip[1], robots[name].grasp_position[0], atol=1e-9)
+        np.testing.assert_allclose(plan.tip[1], robots[name].p_world_hold[0], atol=1e-9)
 
 
 def test_the_simulated_arm_is_the_named_one(robots: Solution) -> None:
@@ -76,7 +76,7 @@ def test_the_simulated_arm_is_the_named_one(robots: Solution) -> None:
         robot = robots[name]
         arm = SimulatedArm(robots, np.ones(7), True, name)
         arm.rest(robot.q[0, robot.moving], np.zeros(3))
-        np.testing.assert_allclose(arm.tip, robot.grasp_position[0], atol=1e-6)
+        np.testing.assert_allclose(arm.tip, robot.p_world_hold[0], atol=1e-6)
 
 
 def test_the_lever_is_from_a_gripper_to_the_middle_of_the_other_hands(robots: Solution, solved: Any) -> None:
@@ -92,7 +92,7 @@ def test_a_record_is_compared_with_the_named_persons_hand(people: Solution) -> N
     record = ForceRecord("f.csv", 1, ("index", "thumb"), time, np.ones((50, 2)), quiet, np.zeros(2), ())
     for name in ("anna", "ben"):
         (found,) = experiment(people, forces=[record], person=name).comparisons
-        assert found.predicted[-1] == pytest.approx(people[name].grasp_force[-1, 2])
+        assert found.predicted[-1] == pytest.approx(people[name].load[-1, 2])
     with pytest.raises(InputError, match="more than one person: anna, ben"):
         experiment(people, forces=[record])
 

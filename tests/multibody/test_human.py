@@ -32,7 +32,7 @@ def test_joint_names_and_frames_are_those_of_table_2(human):
     names = [f"human_GT{i}" for i in (1, 2, 3)] + [f"human_Q{i}" for i in range(1, 11)]
     assert list(human.model.names)[1:] == names
     assert human.locked_joints == tuple(names[:3])
-    assert human.model.existFrame("world") and human.model.existFrame(human.grasp_frame)
+    assert human.model.existFrame("world") and human.model.existFrame(human.hands[0])
     assert human.reduced().nq == len(human.posture) == len(human.limits.q_lower) == 10
 
 

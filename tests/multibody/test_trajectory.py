@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.multibody.agent import Agent, JointLimits, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
@@ -42,7 +42,8 @@ def swinging_arm() -> Agent:
         model.appendBodyToJoint(parent, body, pin.SE3.Identity())
     model.addFrame(pin.Frame("tip", parent, 0, pin.SE3(np.eye(3), np.array([0.0, 0.1, 0.3])), pin.FrameType.OP_FRAME))
     ones = np.ones(3)
-    return Agent("swing", "robot", "", model, (), "tip", JointLimits(-ones, ones, ones, -ones, ones), np.zeros(3))
+    limits = JointLimits(-ones, ones, ones, -ones, ones)
+    return Agent("swing", "robot", "", model, (), (Grasp("swing", "tip"),), ("tip",), limits, np.zeros(3))
 
 
 AGENTS = {
@@ -76,7 +77,7 @@ def test_torques_are_rneas_with_the_reaction_as_external_force(agent: Agent, rng
     moving, force = smooth(n, 1)(np.linspace(0.0, 2.0, 5)), 20.0 * rng.normal(size=(5, 3))
     found = agent_trajectory(agent, *moving, force)
     q, v, a = (full(agent, part) for part in moving)
-    frame = model.frames[model.getFrameId(agent.grasp_frame)]
+    frame = model.frames[model.getFrameId(agent.hands[0])]
     for k in range(5):
         pin.forwardKinematics(model, data, q[k])
         placement = data.oMi[frame.parentJoint] * frame.placement
@@ -87,7 +88,7 @@ def test_torques_are_rneas_with_the_reaction_as_external_force(agent: Agent, rng
         loads[frame.parentJoint] = data.oMi[frame.parentJoint].actInv(reaction)
         expected = pin.rnea(model, data, q[k], v[k], a[k], loads)
         np.testing.assert_allclose(found.tau[k], expected, rtol=0, atol=1e-12 * max(1.0, np.abs(expected).max()))
-        np.testing.assert_allclose(found.grasp_position[k], placement.translation, atol=1e-14)
+        np.testing.assert_allclose(found.p_world_hold[k], placement.translation, atol=1e-14)
     assert found.joint_names == tuple(list(model.names)[1:])
     np.testing.assert_array_equal(found.moving, [name not in agent.locked_joints for name in found.joint_names])
     for actual, expected in zip((found.q, found.v, found.a), (q, v, a), strict=True):
@@ -118,7 +119,7 @@ def test_ground_reaction_is_whole_body_newton_euler(agent: Agent, rng: np.random
         ahead, behind, (_, _, gravity) = momentum(t + h), momentum(t - h), momentum(t)
         expected = (ahead[0] - behind[0]) / (2 * h) + [0.0, 0.0, 9.81 * mass] + force[k]
         np.testing.assert_allclose(found.ground_force[k], expected, atol=1e-5)
-        moment = (ahead[1] - behind[1]) / (2 * h) - gravity + np.cross(found.grasp_position[k] - base, force[k])
+        moment = (ahead[1] - behind[1]) / (2 * h) - gravity + np.cross(found.p_world_hold[k] - base, force[k])
         np.testing.assert_allclose(found.ground_moment[k], moment, atol=1e-5)
 
 

@@ -48,7 +48,7 @@ def test_yourdfpy_agrees_on_kinematics(agents, name, frame_pose):
     q = np.random.default_rng(3).uniform(-1.0, 1.0, agent.model.nq)
     loaded.update_cfg(q)
     np.testing.assert_allclose(
-        loaded.get_transform(agent.grasp_frame, "world"), frame_pose(agent.model, agent.grasp_frame, q), atol=1e-12
+        loaded.get_transform(agent.hands[0], "world"), frame_pose(agent.model, agent.hands[0], q), atol=1e-12
     )
 
 

@@ -29,7 +29,7 @@ def test_robots_height_and_tool_reach_the_model(entry: str, joint: str | None) -
         robot = agents_of(load_scenario("table5", scenario_entries))[1]
         data = robot.model.createData()
         pin.framesForwardKinematics(robot.model, data, pin.neutral(robot.model))
-        return data.oMf[robot.model.getFrameId(joint or robot.grasp_frame)]
+        return data.oMf[robot.model.getFrameId(joint or robot.hands[0])]
 
     moved = np.linalg.norm(where([entry]).translation - where([]).translation)
     assert moved == pytest.approx(1.2 - 0.915 if joint else 0.35 - 0.15, abs=1e-9)

@@ -36,7 +36,7 @@ def pose(agent: Agent, frame: str) -> pin.SE3:
 
 def test_two_people_face_each_other_and_hold_opposite_edges(two_people: Scenario) -> None:
     anna, ben = agents_of(two_people)
-    assert [(agent.name, agent.kind, agent.grasp_frame) for agent in (anna, ben)] == [
+    assert [(agent.name, agent.kind, agent.hands[0]) for agent in (anna, ben)] == [
         ("anna", "person", "anna_grasp"),
         ("ben", "person", "ben_grasp"),
     ]
@@ -71,7 +71,9 @@ def test_a_person_moved_and_turned_is_the_same_person_elsewhere() -> None:
     assert now.workspace is not None
     np.testing.assert_allclose(now.workspace.normal, moved.rotation[:, 0], atol=1e-12)
     assert now.workspace.offset == pytest.approx(now.workspace.normal @ at, abs=1e-12)
-    np.testing.assert_allclose(moved.rotation @ was.grasp.R_hand_object.T, now.grasp.R_hand_object.T, atol=1e-12)
+    np.testing.assert_allclose(
+        moved.rotation @ was.grasps[0].R_hand_object.T, now.grasps[0].R_hand_object.T, atol=1e-12
+    )
 
 
 def test_a_person_and_two_sawyers_stand_and_hold_where_the_file_says(trio: Scenario) -> None:

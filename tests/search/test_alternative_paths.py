@@ -35,7 +35,7 @@ def _gaps(problem: Problem, x: np.ndarray) -> np.ndarray:
             model = agent.reduced()
             data = model.createData()
             pin.framesForwardKinematics(model, data, row[problem.layout.columns(i)])
-            hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
+            hand = data.oMf[model.getFrameId(agent.hands[0])].translation
             edge = lifted.model.frames[lifted.model.getFrameId(lifted.grasp_frames[i])].placement.translation
             gaps[k, i] = np.linalg.norm(hand - placement.act(edge))
     return gaps

@@ -43,7 +43,7 @@ def test_nothing_is_in_the_way_of_the_default_lift_and_the_postures_hold_it() ->
             data, q = model.createData(), posture.coordinates[at : at + model.nq]
             at += model.nq
             pin.framesForwardKinematics(model, data, q)
-            hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation
+            hand = data.oMf[model.getFrameId(agent.hands[0])].translation
             assert np.linalg.norm(hand - (z[:3] + np.array([ahead, 0.0, -0.01]))) < 1e-4
             assert (q >= agent.limits.q_lower - 1e-12).all()
             assert (q <= agent.limits.q_upper + 1e-12).all()

@@ -65,7 +65,7 @@ def _farthest(height: float) -> float:
     """Return the largest distance of feet and base at which the robot's hand gets to 0.85 m ahead of the feet."""
     robot = agent_of(load_scenario("table5_paper", FAR), "robot")
     model, limits = robot.reduced(), robot.limits
-    data, frame = model.createData(), model.getFrameId(robot.grasp_frame)
+    data, frame = model.createData(), model.getFrameId(robot.hands[0])
 
     def hand(q: np.ndarray) -> np.ndarray:
         pin.framesForwardKinematics(model, data, q)

@@ -32,7 +32,7 @@ def hands_and_points(problem: Problem, coordinates: np.ndarray) -> list[tuple[np
         data = model.createData()
         pin.framesForwardKinematics(model, data, coordinates[problem.layout.columns(i)])
         lever = lifted.model.frames[lifted.model.getFrameId(lifted.grasp_frames[i])].placement.translation
-        hand = data.oMf[model.getFrameId(agent.grasp_frame)].translation.copy()
+        hand = data.oMf[model.getFrameId(agent.hands[0])].translation.copy()
         pairs.append((hand, x[:3] + turn[0] @ turn[1] @ turn[2] @ lever))
     return pairs
 

@@ -37,7 +37,7 @@ def test_posture_holds_the_object(end: str, team: Team, make_task: Callable[...,
         model, f = agent.reduced(), posture.force[3 * i : 3 * i + 3]
         q = posture.coordinates[first : first + model.nv]
         first += model.nv
-        data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+        data, frame = model.createData(), model.getFrameId(agent.hands[0])
         tau = pin.computeGeneralizedGravity(model, data, q).copy()
         tau += pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:3].T @ f
         limits = agent.limits

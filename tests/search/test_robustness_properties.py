@@ -18,7 +18,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from liftopt.errors import InputError
-from liftopt.multibody.agent import Agent, JointLimits
+from liftopt.multibody.agent import Agent, Grasp, JointLimits
 from liftopt.multibody.dh import BodyInertia, DHChain, DHRow
 from liftopt.multibody.trajectory import agent_trajectory, object_trajectory
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
@@ -30,6 +30,7 @@ from liftopt.storage.reader import load_result
 from liftopt.storage.urdf_check import check_urdf
 from liftopt.storage.writer import save
 
+HAND = "random_grasp"
 SLOW = settings(
     deadline=None,
     derandomize=True,
@@ -121,10 +122,10 @@ def chains(draw: st.DrawFn) -> Agent:
     bounds = {row.name: JointBounds(-3.0, 3.0, 100.0, 10.0) for row in rows}
     root = FixedLink("base", "world", base)
     chain = DHChain("random", tuple(rows), tuple(bodies))
-    text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes={}, grasp="random_grasp"))
+    text = urdf_text(chain_robot(chain, root=root, bounds=bounds, shapes={}, grasp=HAND))
     ones = np.ones(len(rows))
     limits = JointLimits(-3.0 * ones, 3.0 * ones, 10.0 * ones, -100.0 * ones, 100.0 * ones)
-    return Agent("random", "robot", text, load_model(text), (), "random_grasp", limits, 0.0 * ones)
+    return Agent("random", "robot", text, load_model(text), (), (Grasp("random", HAND),), (HAND,), limits, 0.0 * ones)
 
 
 @settings(SLOW, max_examples=60)
@@ -138,11 +139,11 @@ def test_the_ground_bears_any_agent_by_newtons_and_eulers_laws(agent: Agent, see
     pin.computeCentroidalMomentumTimeVariation(model, data, q[0], v[0], a[0])
     weight = sum(body.mass for body in list(model.inertias)[1:]) * np.array([0.0, 0.0, -9.81])
     com, base = data.com[0], model.jointPlacements[1].translation
-    by_ground, by_object = found.ground_force[0], -found.grasp_force[0]
+    by_ground, by_object = found.ground_force[0], -found.load[0]
     scale = 1.0 + np.abs(np.concatenate([data.dhg.vector, found.ground_moment[0], by_ground])).max()
     np.testing.assert_allclose((by_ground + by_object + weight) / scale, data.dhg.linear / scale, atol=1e-12)
     moment = found.ground_moment[0] + np.cross(base - com, by_ground)
-    moment += np.cross(found.grasp_position[0] - com, by_object)
+    moment += np.cross(found.p_world_hold[0] - com, by_object)
     np.testing.assert_allclose(moment / scale, data.dhg.angular / scale, atol=1e-12)
     check_urdf(agent.urdf)  # raises where it is none of liftopt's
 
@@ -154,7 +155,7 @@ def test_torques_of_any_agent_do_the_work_that_changes_its_energy(agent: Agent, 
     rng, model = np.random.default_rng(seed), agent.model
     q, v, a, force = (rng.normal(size=(1, n)) for n in (model.nv, model.nv, model.nv, 3))
     found, data = agent_trajectory(agent, q, v, a, force), model.createData()
-    grasp = model.getFrameId(agent.grasp_frame)
+    grasp = model.getFrameId(agent.hands[0])
     pin.forwardKinematics(model, data, q[0], v[0])
     velocity = pin.getFrameVelocity(model, data, grasp, pin.LOCAL_WORLD_ALIGNED).linear
     # The rate of kinetic energy is v . (M a + C v), that of the potential energy v . g.

@@ -52,7 +52,7 @@ def test_all_six_rows_of_balance_hold(wrench: Any) -> None:
     assert np.abs(solution.object.wrench).max() < 1e-6
     assert np.abs(solution.object.pose[:, 3]).max() <= np.radians(10.0) + 1e-9
     for agent, most in zip(agents, (10.0, 5.0), strict=True):
-        moment = np.linalg.norm(agent.grasp_moment, axis=1)
+        moment = np.linalg.norm(agent.grasp_moment, axis=2)
         assert 0.1 < moment.max() <= most + 1e-6
     checks = {check.name for check in solution.verification.checks}
     assert {"grasp moment cap", "hand on the object"} <= checks and "unserved moment" not in checks
@@ -71,7 +71,7 @@ def test_file_keeps_the_moments(wrench: Any) -> None:
         np.testing.assert_array_equal(one.grasp_moment, other.grasp_moment)
         np.testing.assert_array_equal(one.tau, other.tau)
         np.testing.assert_allclose(one.ground_moment, other.ground_moment, rtol=0, atol=1e-12)
-        assert other.grasp.moments
+        assert all(grasp.moments for grasp in other.grasps)
     np.testing.assert_allclose(wrench.solution.object.wrench, again.object.wrench, rtol=0, atol=1e-12)
     moments = summary_dict(again)["grasp_moment"]
     assert moments["robot"]["limit_Nm"] == 5.0 and moments["human"]["peak_Nm"] <= 10.0 + 1e-6

@@ -22,9 +22,9 @@ def three(team_solution: Callable[[str], Any]) -> Callable[[np.ndarray], list[Ag
     agents = team_solution("two_robots").solution.agents
 
     def hands(force: np.ndarray) -> list[AgentTrajectory]:
-        knots = len(agents[0].grasp_force)
+        knots = len(agents[0].load)
         return [
-            replace(agent, grasp_position=np.tile(point, (knots, 1)), grasp_force=np.tile(one, (knots, 1)))
+            replace(agent, grasp_position=np.tile(point, (knots, 1, 1)), grasp_force=np.tile(one, (knots, 1, 1)))
             for agent, point, one in zip(agents, CORNERS, force, strict=True)
         ]
 
@@ -58,9 +58,9 @@ def test_internal_forces_move_nothing_and_leave_the_smallest_forces(three: Calla
 def test_of_two_hands_it_is_half_the_difference_along_their_line(team_solution: Callable[[str], Any]) -> None:
     """And the internal forces of two are the same thing."""
     agents = team_solution("two_people").solution.agents
-    line = agents[1].grasp_position - agents[0].grasp_position
+    line = agents[1].p_world_hold - agents[0].p_world_hold
     line /= np.linalg.norm(line, axis=1, keepdims=True)
-    expected = 0.5 * ((agents[0].grasp_force - agents[1].grasp_force) * line).sum(axis=1)
+    expected = 0.5 * ((agents[0].load - agents[1].load) * line).sum(axis=1)
     np.testing.assert_allclose(squeeze(agents), expected, rtol=1e-12)
     np.testing.assert_allclose(internal_forces(agents)[0], expected[:, None] * line, atol=1e-9)
 

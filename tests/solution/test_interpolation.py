@@ -32,7 +32,7 @@ def test_a_cubic_comes_back_exactly() -> None:
 def test_finer_grid_shows_the_closure_that_the_verification_found_on_the_solvers_spline(solution: Any) -> None:
     dense = resample(solution, 10)
     gaps = [
-        np.linalg.norm(agent.grasp_position - dense.object.grasp_position[:, i], axis=1).max()
+        np.linalg.norm(agent.p_world_hold - dense.object.grasp_position[:, i], axis=1).max()
         for i, agent in enumerate(dense.agents)
     ]
     found = solution.verification.check("grasp closure between knots").value

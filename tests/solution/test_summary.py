@@ -59,7 +59,7 @@ def test_load_share_is_the_part_of_the_vertical_force(solution: SimpleNamespace)
 
 def test_load_share_in_free_fall_is_none(solution: SimpleNamespace) -> None:
     for agent in solution.agents:
-        agent.grasp_force[2, 2] = 0.0
+        agent.grasp_force[2, 0, 2] = 0.0
     share = summary_dict(solution)["load_share"]["agents"]
     assert share["human"]["share"][2] is None
     assert share["human"]["max"] == pytest.approx(0.6, abs=1e-15)
@@ -163,7 +163,7 @@ def test_a_load_share_of_many_knots_and_wide_figures_fits_80_columns(solution: S
     for agent, force in zip(solution.agents, (-0.5, 1.5), strict=True):
         agent.q, agent.tau = np.zeros((41, agent.q.shape[1])), np.zeros((41, agent.q.shape[1]))
         agent.grasp_position = np.repeat(agent.grasp_position[:1], 41, axis=0)
-        agent.grasp_force = np.tile([0.0, 0.0, 20.0 * force], (41, 1))
+        agent.grasp_force = np.tile([0.0, 0.0, 20.0 * force], (41, 1, 1))
         agent.ground_force = agent.ground_moment = np.zeros((41, 3))
     text = _text(solution)
     assert max(map(len, text.splitlines())) <= 80

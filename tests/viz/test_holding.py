@@ -90,7 +90,7 @@ def test_the_palm_hangs_on_the_models_wrist(lift: Any, playback: Playback) -> No
     from liftopt.scenario.build import agents_of
 
     (person,) = (agent for agent in agents_of(lift.scenario) if agent.kind == "person")
-    data, frame = person.model.createData(), person.model.getFrameId(person.grasp_frame)
+    data, frame = person.model.createData(), person.model.getFrameId(person.hands[0])
     for k in (0, len(playback.time) - 1):
         q = lift["human"].q[0 if k == 0 else -1]
         pin.forwardKinematics(person.model, data, q)

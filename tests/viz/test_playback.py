@@ -82,7 +82,7 @@ def test_it_lasts_as_long_as_the_lift_and_forces_are_linear_between_knots(soluti
     assert playback.time[-1] == pytest.approx(solution.scenario.duration, abs=1e-12)
     for track in solution.agents:
         middle = (solution.time[:-1] + solution.time[1:]) / 2
-        mean = (track.grasp_force[:-1] + track.grasp_force[1:]) / 2
+        mean = (track.load[:-1] + track.load[1:]) / 2
         shown = playback.forces[track.name].force
         at = np.stack([np.interp(middle, playback.time, shown[:, i]) for i in range(3)], axis=1)
         np.testing.assert_allclose(at, mean, atol=1e-9)

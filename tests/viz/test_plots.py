@@ -100,7 +100,7 @@ def test_forces_and_shares(figures: dict[str, Figure], lift: Lift) -> None:
     figure = figures["grasp_forces"]
     for agent, title in zip(lift.dense.agents, ("Force of the person", "Force of the robot"), strict=True):
         for i in range(3):
-            np.testing.assert_allclose(_panel(figure, title).lines[i].get_ydata(), agent.grasp_force[:, i], atol=1e-12)
+            np.testing.assert_allclose(_panel(figure, title).lines[i].get_ydata(), agent.load[:, i], atol=1e-12)
     part = shares(lift.dense.agents)
     np.testing.assert_allclose(part.sum(axis=0), 1.0, atol=1e-12)
     np.testing.assert_allclose(_panel(figure, "Load share").lines[0].get_ydata(), 100 * part[0], atol=1e-9)
@@ -141,7 +141,7 @@ def _luminance(color: str) -> float:
 def test_snapshots_put_the_hands_where_forward_kinematics_does(figures: dict[str, Figure], lift: Lift) -> None:
     """One map without perspective takes all paths of all panels there: x to the right, z up, y hardly seen."""
     agents = lift.dense.agents
-    points = np.vstack([agent.grasp_position for agent in agents])
+    points = np.vstack([agent.p_world_hold for agent in agents])
     for axes, moment in zip(figures["snapshots"].axes, (0.0, 0.25, 0.5, 0.75, 1.0), strict=True):
         k = round(moment * (len(lift.dense.time) - 1))
         drawn_at = np.vstack([axes.lines[2 * i].get_xydata() for i in range(len(agents))])
@@ -153,8 +153,8 @@ def test_snapshots_put_the_hands_where_forward_kinematics_does(figures: dict[str
         arrows = [patch for patch in axes.patches if hasattr(patch, "get_arrowstyle")]
         for i, (arrow, agent) in enumerate(zip(arrows, agents, strict=True)):
             start, tip = arrow._posA_posB
-            np.testing.assert_allclose(start, agent.grasp_position[k] @ affine[:3] + affine[3], atol=1e-6)
-            along, force = np.subtract(tip, start), agent.grasp_force[k] @ affine[:3]
+            np.testing.assert_allclose(start, agent.p_world_hold[k] @ affine[:3] + affine[3], atol=1e-6)
+            along, force = np.subtract(tip, start), agent.load[k] @ affine[:3]
             assert along[0] * force[1] == pytest.approx(along[1] * force[0], abs=1e-6)
             assert along @ force > 0
             np.testing.assert_allclose(axes.lines[2 * i + 1].get_xydata()[-1], start, atol=1e-9)  # the path so far

@@ -89,6 +89,6 @@ def test_the_plot_shows_them_over_the_band_by_the_wrists_height(lift: Lift) -> N
         np.testing.assert_array_equal(recorded.get_ydata(), RECORDED[name].mean)
         np.testing.assert_array_equal(predicted.get_ydata(), angles[name])
         # The wrist is a hand's length or less from the grasp point, above or below.
-        assert np.abs(predicted.get_xdata() - person.grasp_position[:, 2]).max() < 0.1
+        assert np.abs(predicted.get_xdata() - person.p_world_hold[:, 2]).max() < 0.1
     legend = figure.axes[0].get_legend().get_texts()
     assert "recorded: one person, a trend" in [text.get_text() for text in legend]

@@ -69,8 +69,8 @@ def test_a_force_arrow_starts_at_the_hand_and_points_along_the_force(opened: Any
     opened.run(f"liftopt.seek({lift.solution.time[knot]})")
     for track in lift.solution.agents:
         arrow = _placement(opened, f"/lift/force/{track.name}")
-        force = track.grasp_force[knot]
-        np.testing.assert_allclose(arrow[:3, 3], track.grasp_position[knot], atol=DRAWN)
+        force = track.load[knot]
+        np.testing.assert_allclose(arrow[:3, 3], track.p_world_hold[knot], atol=DRAWN)
         np.testing.assert_allclose(arrow[:3, 2], force / np.linalg.norm(force), atol=1e-4)
         head = _placement(opened, f"/lift/force/{track.name}/head")
         tip = head[:3, 3] + 0.07 * head[:3, 2]
@@ -193,7 +193,7 @@ def test_panels_cover_neither_each_other_nor_the_edge(opened: Any, width: int, h
 def test_every_camera_preset_shows_what_it_says_upright(opened: Any, lift: Any, width: int, height: int) -> None:
     """A point above another must be above it on the screen, and what a preset is for between the panels."""
     base = lift.solution.scenario.task.standing_distance
-    hands = [track.grasp_position[k].tolist() for track in lift.solution.agents for k in (0, 5, 10)]
+    hands = [track.p_world_hold[k].tolist() for track in lift.solution.agents for k in (0, 5, 10)]
     robot = [[base, 0.0, 0.0], [base, 0.0, lift.solution.scenario.first("robot").base_height]]
     for name, points in {
         "three-quarter": PERSON + robot + hands,

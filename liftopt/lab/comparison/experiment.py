@@ -100,13 +100,13 @@ def _person(
         yield _compared("human_torque", joint.joint, curve.label, "Nm", dense, curve.tau, torques)
     for axis, name, label in ((0, "x", "Hand, forward of its start"), (2, "z", "Hand, above its start")):
         paths = [record.over_lift(record.hand_position[:, axis], SAMPLES) for record in records]
-        predicted = human.grasp_position[:, axis] - human.grasp_position[0, axis]
+        predicted = human.p_world_hold[:, axis] - human.p_world_hold[0, axis]
         yield _compared("hand_path", name, label, "m", dense, predicted, [path - path[0] for path in paths])
     loaded = [record for record in records if not record.force_from.startswith(NO_FORCE)]
     if loaded:
         vertical = [record.over_lift(record.hand_force[:, 2], SAMPLES) for record in loaded]
         label = "Vertical force (mocap)"
-        yield _compared("hand_force", "mocap", label, "N", dense, human.grasp_force[:, 2], vertical)
+        yield _compared("hand_force", "mocap", label, "N", dense, human.load[:, 2], vertical)
     asked = dense.scenario.agents[human.name]
     assert isinstance(asked, Person)
     for record in records:
@@ -151,7 +151,7 @@ def _hand(
         notes.append("force sensors: each trial's first and last sample are taken for the lift's start and end")
     notes.append("force sensors: fingers minus thumb is compared with the vertical force, as if the object stays level")
     label = "Vertical force (sensors)"
-    yield _compared("hand_force", "sensors", label, "N", dense, the_person(dense, person).grasp_force[:, 2], trials)
+    yield _compared("hand_force", "sensors", label, "N", dense, the_person(dense, person).load[:, 2], trials)
 
 
 def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], notes: list[str]) -> Iterator[Comparison]:

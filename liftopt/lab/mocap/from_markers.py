@@ -143,7 +143,7 @@ def recorded_lift(
         v=v,
         a=a,
         tau=trajectory.tau,
-        hand_position=trajectory.grasp_position,
+        hand_position=trajectory.p_world_hold,
         hand_force=force,
         force_from=force_from,
         ground_force=trajectory.ground_force,

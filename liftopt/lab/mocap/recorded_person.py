@@ -11,7 +11,7 @@ from liftopt.lab.mocap.anatomy import Skeleton
 from liftopt.lab.mocap.recording import Recording
 from liftopt.lab.mocap.scaling import ScaledSubject, measured_chain
 from liftopt.lab.mocap.tracking import TrackedMarker
-from liftopt.multibody.agent import Agent, JointLimits
+from liftopt.multibody.agent import Agent, Grasp, JointLimits
 from liftopt.multibody.person.human import (
     NAME,
     VIRTUAL,
@@ -116,4 +116,5 @@ def _agent(scaled: ScaledSubject) -> Agent:
     # Shapes are the subject's own: they are only looked at.
     shapes = placed_shapes(human_chain(scaled.subject), scaled.subject)
     text = chain_urdf(measured_chain(scaled), joint_bounds(rows, limits), shapes)
-    return Agent(NAME, "person", text, load_model(text), (), f"{NAME}_grasp", limits, np.zeros(len(rows)))
+    hand = f"{NAME}_grasp"
+    return Agent(NAME, "person", text, load_model(text), (), (Grasp(NAME, hand),), (hand,), limits, np.zeros(len(rows)))

@@ -14,7 +14,7 @@ import numpy as np
 from liftopt.lab.meant import the_robot
 from liftopt.lab.robot.simulated_arm import STEP
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
-from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory, cross
+from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory, cross, grasps_of
 from liftopt.scenario.build import agent_of, object_of
 from liftopt.solution.interpolation import linear, resample
 from liftopt.solution.solution import Solution
@@ -58,7 +58,7 @@ class Plan:
         interval = float(solution.time[1] - solution.time[0])
         dense = resample(solution, max(1, round(interval / STEP / 2)))
         arm = the_robot(dense, robot)
-        force, moment, torque = -arm.grasp_force, -arm.grasp_moment, JOINT_SIGNS * arm.tau[:, arm.moving]
+        force, moment, torque = -arm.grasp_force[:, 0], -arm.grasp_moment[:, 0], JOINT_SIGNS * arm.tau[:, arm.moving]
         before, after = (_at_rest(dense, arm, k) for k in (0, -1))
         rows = [
             np.vstack([first, rows, last])
@@ -69,7 +69,7 @@ class Plan:
             np.concatenate([[-AT_ONCE], dense.time, [dense.time[-1] + AT_ONCE]]),
             _ends_repeated(JOINT_SIGNS * arm.q[:, arm.moving]),
             rows[0],
-            _ends_repeated(arm.grasp_position),
+            _ends_repeated(arm.grasp_position[:, 0]),
             rows[1],
             rows[2],
         )
@@ -99,18 +99,18 @@ def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Ar
     columns: list[Array] = []
     loads: list[Array] = []
     first = 0
-    for agent, arm in zip(dense.agents, arms, strict=True):
+    for g, agent, own_grasp, grasp in grasps_of(dense.agents):
         if agent.name == robot.name:
             first = sum(len(load) for load in loads)
-        columns.append(np.vstack([np.eye(3), cross(arm, np.eye(3)).T]))
-        loads.append(agent.grasp_force[k])
-        if agent.grasp.moments:
+        columns.append(np.vstack([np.eye(3), cross(arms[g], np.eye(3)).T]))
+        loads.append(agent.grasp_force[k, own_grasp])
+        if grasp.moments:
             columns.append(np.eye(6)[:, 3:])
-            loads.append(agent.grasp_moment[k])
+            loads.append(agent.grasp_moment[k, own_grasp])
     grasp_map, load = np.hstack(columns), np.concatenate(loads)
     weight = np.append(-lifted.model.inertias[1].mass * lifted.model.gravity.linear, np.zeros(3))
     load = load + np.linalg.pinv(grasp_map) @ (weight - grasp_map @ load)
-    own = load[first : first + 6] if robot.grasp.moments else np.append(load[first : first + 3], np.zeros(3))
+    own = load[first : first + 6] if robot.grasps[0].moments else np.append(load[first : first + 3], np.zeros(3))
     q, none = robot.q[[k]][:, robot.moving], np.zeros((1, int(robot.moving.sum())))
     still = agent_trajectory(
         agent_of(dense.scenario, robot.name, dense.urdfs), q, none, none, own[None, :3], own[None, 3:]

@@ -7,7 +7,7 @@ from math import radians
 
 import numpy as np
 
-from liftopt.multibody.agent import Agent, HalfSpace, JointLimits
+from liftopt.multibody.agent import Agent, Grasp, HalfSpace, JointLimits
 from liftopt.multibody.dh import ROTATION_WORLD_PAPER, BodyInertia, DHChain, frame_transforms, human_rows
 from liftopt.multibody.person.anthropometry import link_lengths
 from liftopt.multibody.person.bodies import human_bodies
@@ -99,7 +99,8 @@ def human_agent(subject: Subject, urdf: str | None = None, *, name: str = NAME, 
         urdf=text,
         model=load_model(text),
         locked_joints=tuple(joint_name(name, row) for row in VIRTUAL),
-        grasp_frame=f"{name}_grasp",
+        grasps=(Grasp(name, f"{name}_grasp"),),
+        hands=(f"{name}_grasp",),
         limits=limits,
         posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
         workspace=HalfSpace(ahead, float(ahead @ (place.x, place.y, 0.0))),

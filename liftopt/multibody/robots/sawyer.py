@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from liftopt.multibody.agent import Agent, JointLimits
+from liftopt.multibody.agent import Agent, Grasp, JointLimits
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.dh import (
     ROTATION_WORLD_PAPER,
@@ -117,7 +117,8 @@ def sawyer_agent(
         urdf=text,
         model=load_model(text),
         locked_joints=tuple(joint_name(name, row) for row in VIRTUAL),
-        grasp_frame=f"{name}_grasp",
+        grasps=(Grasp(name, f"{name}_grasp"),),
+        hands=(f"{name}_grasp",),
         limits=sawyer_limits(),
         posture=np.array(POSTURE),
     )

@@ -44,7 +44,7 @@ def test_solution_is_feasible(solved: SolverResult, small_lift: Problem) -> None
     np.testing.assert_allclose(object_rows[-1][2:], task.end[2:], atol=1e-12)
     for i, agent in enumerate(team.agents):
         columns, limits, model = problem.layout.columns(i), agent.limits, agent.reduced()
-        data, frame = model.createData(), model.getFrameId(agent.grasp_frame)
+        data, frame = model.createData(), model.getFrameId(agent.hands[0])
         positions = space.basis(fine) @ control[:, columns]
         assert (positions >= limits.q_lower - 1e-8).all() and (positions <= limits.q_upper + 1e-8).all()
         assert (np.abs(speed[:, columns]) <= limits.velocity + 1e-7).all()

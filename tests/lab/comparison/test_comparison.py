@@ -119,7 +119,7 @@ def test_force_sensors(solution: Solution) -> None:
     """Sensors that show 0.8 of the predicted force: the prediction is 25 % higher; irregular samples at about 0.1 s."""
     dense = resample(solution, 10)
     time = np.sort(np.append(np.random.default_rng(1).uniform(0.0, 2.0, 30), [0.0, 2.0]))
-    force = 0.8 * np.interp(time, dense.time, dense.agents[0].grasp_force[:, 2])
+    force = 0.8 * np.interp(time, dense.time, dense.agents[0].load[:, 2])
     flags = np.zeros((len(time), 2), np.uint8)
     flags[3, 0] = 1
     record = ForceRecord(
@@ -202,7 +202,7 @@ def test_half_the_weight_is_on_either_carrier(
     lift = solved("table5_paper", *CHEAP, "task.rest=acceleration", *overrides).solution
     assert made.limits.table_pitch_deg == lift.scenario.limits.table_pitch_deg
     assert lift.solved
-    vertical = np.stack([agent.grasp_force[[0, -1], 2] for agent in lift.agents])
+    vertical = np.stack([agent.load[[0, -1], 2] for agent in lift.agents])
     np.testing.assert_allclose(vertical, GRAVITY, rtol=1e-6)
 
 

@@ -47,7 +47,7 @@ def _robot(solution: Any) -> Any:
     """Return Pinocchio's model of the robot without the virtual joints, and the frame of its grasp."""
     agent = agents_of(solution.scenario, solution.urdfs)[1]
     model = agent.reduced()
-    return model, model.createData(), model.getFrameId(agent.grasp_frame)
+    return model, model.createData(), model.getFrameId(agent.hands[0])
 
 
 def _torque(solution: Any, q: Any, v: Any, a: Any, force: Any) -> Any:

@@ -54,7 +54,7 @@ def test_the_manufacturers_frames_put_the_gripper_where_the_solution_has_it(resu
     for knot, row in enumerate(knots):
         placed = world @ described_frames(trajectory.position[row])[-1] @ tip
         # The description has 3.1416 for pi in the last joint, which is 1.1e-6 m at the end of the tool.
-        np.testing.assert_allclose(placed[:3], solution.agents[1].grasp_position[knot], rtol=0, atol=1.5e-6)
+        np.testing.assert_allclose(placed[:3], solution.agents[1].p_world_hold[knot], rtol=0, atol=1.5e-6)
 
 
 def test_velocity_and_acceleration_are_the_derivatives_by_finite_difference(result, trajectory):

@@ -102,7 +102,7 @@ def test_the_table_tells_everybodys_force(opened: Any, two_robots: Any) -> None:
     opened.run("liftopt.seek(0)")
     rows = opened.page.eval_on_selector_all("#facts tr", "all => all.map((each) => each.innerText.trim())")
     words = [re.split(r"\s*\t\s*", row) for row in rows[1:]]
-    forces = [np.linalg.norm(track.grasp_force[0]) for track in two_robots.solution.agents]
+    forces = [np.linalg.norm(track.load[0]) for track in two_robots.solution.agents]
     assert [row[0] for row in words][:5] == [
         "force of the human", "force of near", "force of far", "height of the plank's centre", "nearest two bodies",
     ]  # fmt: skip

@@ -88,7 +88,7 @@ def test_forces_and_shares_of_everybody(lift: Lift) -> None:
         who = "the person" if agent.name == "human" else agent.name
         assert title.startswith(f"Force of {who} on the {lift.dense.object.name}")
         for i in range(3):
-            np.testing.assert_allclose(axes.lines[i].get_ydata(), agent.grasp_force[:, i], atol=1e-12)
+            np.testing.assert_allclose(axes.lines[i].get_ydata(), agent.load[:, i], atol=1e-12)
     share = _panel(figure, "Load share")
     for line, agent, part in zip(share.lines, agents, shares(agents), strict=False):
         assert line.get_label() == agent.name
