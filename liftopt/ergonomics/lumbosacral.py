@@ -16,9 +16,8 @@ from liftopt.types import Array
 
 HEIGHT = 0.20  # of L5/S1 above the hip joints, over the distance from hip to shoulder joints
 HEIGHT_SOURCE = Source(
-    "Chaffin, Andersson & Martin, Occupational Biomechanics: L5/S1 a fifth of the way from hip to shoulder; within 1 "
-    "cm of Reed, Manary & Schneider (1999), SAE 1999-01-0959, as coded in HuMoD",
-    "secondary",
+    "Chaffin, Andersson & Martin, Occupational Biomechanics: L5/S1 a fifth of the way from hip to shoulder",
+    "unverified",
 )
 SACRAL_SLOPE = 40.0  # [deg] of the sacrum's upper face against the horizontal, its front edge down, where one stands
 SLOPE_SOURCE = Source(

@@ -93,7 +93,7 @@ class Niosh:
 
 def niosh(lift: Lift, person: AgentTrajectory) -> Niosh:
     """Return the equation for a person's part of the lift."""
-    load, hand = person.grasp_force[:, :, 2].sum(axis=1) / GRAVITY, person.grasp_position.mean(axis=1)
+    load, hand = person.load[:, 2] / GRAVITY, person.p_world_hold
     ends, coupling = hand[[0, -1]], coupling_of(lift, person)
     travel = abs(float(ends[1, 2] - ends[0, 2])) * 100.0
     speed = np.linalg.norm(np.gradient(hand, lift.time, axis=0), axis=1)

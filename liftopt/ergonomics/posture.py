@@ -85,7 +85,7 @@ def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
         trunk_turn=joint_angle(person, "Q3"),
         # Out of the plane through the body from side to side; a trunk that only bends sideways is not inclined.
         trunk_inclination=np.degrees(np.arctan2(up[:, 0], np.copysign(np.hypot(up[:, 1], up[:, 2]), up[:, 2]))),
-        load=np.linalg.norm(person.grasp_force.sum(axis=1), axis=1) / GRAVITY,
+        load=np.linalg.norm(person.load, axis=1) / GRAVITY,
         arms=tuple(_arm(agent, person, arm, *points[arm]) for arm in arms),
     )
 

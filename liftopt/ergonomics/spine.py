@@ -114,11 +114,9 @@ def load_through(agent: Agent, person: AgentTrajectory, upright: Array, disc: Lu
         wrench[k] = (data.oMi[base].act(data.f[base]) + data.oMi[pelvis].act(own)).vector
         pose = data.oMi[pelvis] * link_pelvis
         axes[k], place[k] = pose.rotation, pose.act(-disc.below * UP)
-    force, point, moment = (
-        np.reshape(each, (times, -1, 3)) for each in (person.grasp_force, person.grasp_position, person.grasp_moment)
-    )
-    total = wrench[:, :3] + force.sum(axis=1)
-    about_origin = wrench[:, 3:] + (cross(point, force) + moment).sum(axis=1)
+    total = wrench[:, :3] + person.load
+    hands = cross(person.grasp_position, person.grasp_force) + person.grasp_moment
+    about_origin = wrench[:, 3:] + hands.sum(axis=1)
     in_pelvis = axes.swapaxes(1, 2)
     force_pelvis = turned(in_pelvis, total)
     moment_pelvis = turned(in_pelvis, about_origin - cross(place, total))
