@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from liftopt.assessment.who import Who
 from liftopt.ergonomics.lifting_style import SOURCE as STYLE_SOURCE
@@ -10,6 +10,7 @@ from liftopt.ergonomics.lifting_style import LiftingStyle
 from liftopt.ergonomics.measure import Measure
 from liftopt.ergonomics.measures import Ergonomics
 from liftopt.ergonomics.reba import reba_action
+from liftopt.ergonomics.recorded_lifts import off_recorded_squat
 from liftopt.ergonomics.rula import ACTION
 from liftopt.ergonomics.scores import PostureScores
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
@@ -17,6 +18,7 @@ from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding
 CHANGE, INVESTIGATE = 5, 3  # grand scores from which RULA asks for a change, and for a closer look
 REBA_CHANGE, REBA_INVESTIGATE = 8, 4  # from which REBA calls the risk high, and medium
 UPPER, ENTIRE = "posture", "whole_posture"  # codes of the two measures
+FROM_FLOOR = 0.4  # [m] up to which hands lift from the floor
 PARTS = {UPPER: ("upper_arm", "lower_arm", "wrist", "trunk"), ENTIRE: ("trunk", "legs", "upper_arm", "wrist")}
 
 
@@ -55,11 +57,17 @@ def _scored(
     )  # fmt: skip
 
 
-def style_findings(who: Who, styles: Sequence[LiftingStyle] | None) -> Iterator[Finding]:
-    """Give how a person with legs stands at the start and at the end of the lift."""
-    if styles is None:
+def style_findings(who: Who, ergonomics: Ergonomics, height: float) -> Iterator[Finding]:
+    """Give how a person with legs stands at the start and at the end of the lift.
+
+    Args:
+        who: how texts call them.
+        ergonomics: theirs.
+        height: of the middle between the hands at the start [m].
+    """
+    if ergonomics.styles is None:
         return
-    start, end = styles
+    start, end = ergonomics.styles
     told = "; ".join(f"at the {when} {_stance(style)}" for when, style in (("start", start), ("end", end)))
     ends = f"ends in {end.style}" if end.style != "upright" else "ends upright"
     begins = f"starts in {start.style}" if start.style != "upright" else "starts upright"
@@ -68,12 +76,20 @@ def style_findings(who: Who, styles: Sequence[LiftingStyle] | None) -> Iterator[
         f"{PERSON}.lifting_style",
         INFO,
         title,
-        f"{who.called[0].upper()}{who.called[1:]} {title}: {told}.",
+        f"{who.called[0].upper()}{who.called[1:]} {title}: {told}.{_recorded(ergonomics, start, height)}",
         who.name,
         value=start.index,
         unit="postural index at the start",
         source=STYLE_SOURCE.told,
     )
+
+
+def _recorded(ergonomics: Ergonomics, start: LiftingStyle, height: float) -> str:
+    """Return how far a squat lift from the floor is off recorded ones; nothing of other lifts."""
+    if start.style not in ("a squat", "a semi-squat") or height > FROM_FLOOR:
+        return ""
+    off = ", ".join(f"{name} {angle:+.0f}" for name, angle in off_recorded_squat(ergonomics.posture).items())
+    return f" Off the means of seven men who squatted to lift from the floor, more bent positive [deg]: {off}."
 
 
 def _stance(style: LiftingStyle) -> str:

@@ -74,8 +74,19 @@ class Posture:
 
 def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
     """Return the posture of a person at every time of a lift."""
-    agent, arms = model_of(lift, person.name), arms_of(person)
-    points, up = _placed(agent, R_world_person(lift, person.name), person.q, arms)
+    return posture_by(model_of(lift, person.name), person, R_world_person(lift, person.name))
+
+
+def posture_by(agent: Agent, person: AgentTrajectory, upright: Array) -> Posture:
+    """Return the posture of a person at K times.
+
+    Args:
+        agent: the person's model.
+        person: its motion and forces.
+        upright: (3, 3) forward, left and up in the world where the person stands upright.
+    """
+    arms = arms_of(person)
+    points, up = _placed(agent, upright, person.q, arms)
     return Posture(
         ankle=joint_angle(person, "ankle"),
         knee=joint_angle(person, "knee"),
