@@ -51,6 +51,8 @@ def test_scopes_are_stated(solution: Any) -> None:
     scopes = {measure.name: measure.scope for measure in ergonomics_of(solution, solution["human"]).measures}
     assert scopes == {
         "RULA": "applies",
+        "NIOSH action limit on L5/S1 compression": "indicative",
+        "Gallagher and Marras limit on L5/S1 shear": "indicative",
         "Revised NIOSH lifting equation": "indicative",
         "ISO 11228-1": "out of scope",
         "ACGIH TLV for lifting": "indicative",
@@ -84,3 +86,32 @@ def test_strength_use_is_torque_over_the_limit_in_its_direction(posed: Callable[
     assert tau > 0
     assert use.peak == pytest.approx(tau / 92.0, rel=1e-12)
     assert use.mean == pytest.approx(use.peak, rel=1e-12)
+
+
+@pytest.fixture
+def alone(solution: Any) -> Callable[..., Any]:
+    """Return a function that gives the person of the lift without the robot, slow, with both hands on a small box."""
+
+    def lift(width: float = 0.35, height: float = 0.25, z: float | None = None, friction: float | None = None) -> Any:
+        human, below = solution["human"], -height / 2.0 if z is None else z
+        grasp = replace(human.grasps[0], friction=friction)
+        apart = np.array([0.0, 0.15, 0.0])
+        # The middle between the hands is where the one hand was, and they share its force.
+        person = replace(
+            human,
+            grasps=(replace(grasp, name="human_right"), replace(grasp, name="human_left")),
+            grasp_position=np.concatenate([human.grasp_position - apart, human.grasp_position + apart], axis=1),
+            grasp_force=np.repeat(human.grasp_force / 2.0, 2, axis=1),
+            grasp_moment=np.repeat(human.grasp_moment / 2.0, 2, axis=1),
+        )
+        points = {name: (0.0, y, below) for name, y in (("human_right", -0.15), ("human_left", 0.15))}
+        scenario = solution.scenario.replace({"object.width": width, "object.height": height})
+        scenario = _holding(scenario, points)
+        return replace(solution, scenario=scenario, agents=(person,), time=4.0 * solution.time)
+
+    return lift
+
+
+def _holding(scenario: Any, points: dict[str, tuple[float, float, float]]) -> Any:
+    """Return a scenario whose hands hold the object at these points, by the names of the grasps."""
+    return scenario.model_copy(update={"object": scenario.object.model_copy(update={"grasps": points})})
