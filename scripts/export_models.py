@@ -8,16 +8,20 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
 
 from liftopt.multibody.person.human import Subject, human_agent
-from liftopt.multibody.person.provenance import subject_quantities
+from liftopt.multibody.person.provenance import Quantity, subject_quantities, whole_quantities
+from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 
 SUBJECT = Subject(stature=1.75, mass=75.0, sex="male")
+ARM_BODIES = "GT3 carries pelvis and legs, Q3 trunk, head and left arm."
+WHOLE_BODIES = "The ankle moves both shanks, the knee both thighs, the hip the pelvis, Q3 trunk and head."
 
 
 def default_files() -> dict[str, str]:
@@ -25,21 +29,30 @@ def default_files() -> dict[str, str]:
     robot = sawyer_agent(place=facing(1.9), base_height=0.915, tool_length=0.15, tool_mass=0.4)
     return {
         "human_arm.urdf": human_agent(SUBJECT).urdf,
-        "human_arm_numbers.md": numbers_page(SUBJECT),
+        "human_arm_numbers.md": numbers_page("human_arm.urdf", SUBJECT, subject_quantities(SUBJECT), ARM_BODIES),
+        "whole_body.urdf": whole_human_agent(SUBJECT).urdf,
+        "whole_body_numbers.md": numbers_page("whole_body.urdf", SUBJECT, whole_quantities(SUBJECT), WHOLE_BODIES),
         "sawyer.urdf": robot.urdf,
         "table.urdf": lifted_table(mass=2.0, depth=0.45, width=0.31, height=0.02).urdf,
     }
 
 
-def numbers_page(subject: Subject) -> str:
-    """Return a Markdown page with every number of the subject's model and its source."""
-    quantities = subject_quantities(subject)
+def numbers_page(urdf: str, subject: Subject, quantities: Sequence[Quantity], bodies: str) -> str:
+    """Return a Markdown page with every number of the subject's model and its source.
+
+    Args:
+        urdf: name of the model's file.
+        subject: who it is.
+        quantities: the numbers.
+        bodies: a sentence on what is on which body.
+    """
     sources = list(dict.fromkeys(quantity.source for quantity in quantities))
     lines = [
-        f"# Numbers of human_arm.urdf: {subject.sex}, {subject.stature:g} m, {subject.mass:g} kg",
+        f"# Numbers of {urdf}: {subject.sex}, {subject.stature:g} m, {subject.mass:g} kg",
         "",
         "Written by `scripts/export_models.py`. Bodies in the upright zero pose: X forward, Y to the left, Z up,",
-        "from the feet; inertia about the centre of mass. GT3 carries pelvis and legs, Q3 trunk, head and left arm.",
+        "from the feet; inertia about the centre of mass.",
+        bodies,
         "",
         "| group | quantity | value | unit | source |",
         "|---|---|---:|---|---:|",

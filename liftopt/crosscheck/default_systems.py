@@ -1,13 +1,15 @@
-"""The mechanisms of the default task (Table 5), each as DH chain and as the model loaded from its URDF."""
+"""The mechanisms of the default task (Table 5), as DH chain and as the model of its URDF; and the whole person."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from liftopt.crosscheck.systems import CheckedSystem
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import ROTATION_WORLD_PAPER
 from liftopt.multibody.person.human import human_agent, human_chain, human_root
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent, sawyer_chain, sawyer_root
 from liftopt.multibody.table import lifted_table, table_chain
@@ -22,6 +24,11 @@ def default_human() -> CheckedSystem:
     """Return the default subject, who holds at the origin of the last DH frame."""
     agent = human_agent(SUBJECT)
     return CheckedSystem(human_chain(SUBJECT), agent.model, human_root(), agent.hands, np.zeros((1, 3)))
+
+
+def default_whole_person() -> Agent:
+    """Return the default subject with legs and two arms, who has no DH chain but a tree."""
+    return whole_human_agent(SUBJECT)
 
 
 def default_robot() -> CheckedSystem:

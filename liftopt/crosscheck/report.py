@@ -1,4 +1,4 @@
-"""The cross-check as a table: three models, every quantity, its oracle and the worst error found."""
+"""The cross-check as a table: four models, every quantity, its oracle and the worst error found."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from rich.table import Table
 
 from liftopt.crosscheck.arm_checks import arm_checks
 from liftopt.crosscheck.comparison import Comparison
-from liftopt.crosscheck.default_systems import default_human, default_robot, default_table
+from liftopt.crosscheck.default_systems import default_human, default_robot, default_table, default_whole_person
 from liftopt.crosscheck.table_checks import table_checks
+from liftopt.crosscheck.tree_checks import tree_checks
 from liftopt.errors import InputError
 
 
@@ -37,7 +38,7 @@ class CrosscheckReport:
 
 
 def crosscheck_report(samples: int = 1000, seed: int = 0) -> CrosscheckReport:
-    """Compare the DH recursion with Pinocchio on the default human, robot and table.
+    """Compare recursions with Pinocchio: over the DH chains of the default human, robot and table; over a whole person.
 
     Args:
         samples: random states a model, at least 1.
@@ -53,6 +54,7 @@ def crosscheck_report(samples: int = 1000, seed: int = 0) -> CrosscheckReport:
         *arm_checks(default_human(), samples, rng),
         *arm_checks(default_robot(), samples, rng),
         *table_checks(default_table(), samples, rng),
+        *tree_checks(default_whole_person(), samples, rng),
     ]
     return CrosscheckReport(tuple(rows), samples, seed)
 

@@ -42,6 +42,11 @@ DE_LEVA_AND_ANSUR = Source(
     "(de Leva 1996: length of 'trunk' less that of 'trunk3')",
     "computed",
 )
+DE_LEVA_BELOW_OMPHALION = Source(
+    "hip: omphalion height (ANSUR II regression) less the lower trunk (de Leva 1996); knee: between hip and lateral "
+    "malleolus in the proportion of his thigh and shank",
+    "computed",
+)
 DE_LEVA_ON_ANSUR = Source(
     "de Leva (1996) mass fractions, centres of mass and radii of gyration; arm segments in his lengths, trunk and legs "
     "on heights and breadths from ANSUR II regressions; lumped by the parallel-axis theorem",
@@ -55,6 +60,15 @@ AAOS_SPINE = Source(
     "AAOS thoracolumbar values as quoted by Norkin & White and by Magee",
     "unverified",
 )
+AAOS_LEGS = Source(
+    "AAOS values of hip (flexion 120, extension 30 deg), knee (135) and ankle (plantar flexion 50), as commonly quoted",
+    "unverified",
+)
+STANDING_ANKLE = Source(
+    "Baumbach et al. (2014), BMC Musculoskelet Disord 15:246: 39 deg of dorsiflexion [36 to 42], standing on it, knee "
+    "bent by 75 deg, 20 adults",
+    "verified",
+)
 SHOULDER_ADDUCTION = Source("common clinical value of shoulder adduction across the body", "unverified")
 STOBBE_1982 = Source(
     "Stobbe (1982), static strength, 50th percentile, as tabulated in Chaffin, Andersson & Martin, Occupational "
@@ -64,6 +78,11 @@ STOBBE_1982 = Source(
 SCALED_GYMNAST = Source(
     "scaled down for the general population from the torque curves of one gymnast (Millard2016TorqueMuscle in RBDL)",
     "estimate",
+)
+ANDERSON_2007 = Source(
+    "Anderson, Madigan & Nussbaum (2007), J Biomech 40:3105-3113, Table 3, isometric, age 18 to 25, as transcribed in "
+    "Millard2016TorqueMuscle (RBDL); the mean over the angles of a lift, of two legs",
+    "secondary",
 )
 MODEL_CHOICE = Source("chosen for this model", "estimate")
 RETHINK = Source(

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 import pinocchio as pin
 
-from liftopt.multibody.dh import BodyInertia, DHChain, frame_transforms, row_origin, row_tail
+from liftopt.multibody.dh import BodyInertia, DHChain, JointKind, frame_transforms, row_origin, row_tail
 from liftopt.multibody.shapes import Shape, urdf_numbers
 from liftopt.types import Array
 
@@ -49,6 +49,29 @@ class FixedLink:
     parent: str
     placement: Array
     body: BodyInertia = field(default_factory=BodyInertia.zero)
+    shapes: tuple[Shape, ...] = ()
+
+
+@dataclass(frozen=True)
+class MovingLink:
+    """A link that a joint moves against its parent, about the z axis of the link's frame or along it.
+
+    Attributes:
+        joint, name, parent: names of the joint, of the link and of the link that carries it.
+        kind: of the joint.
+        placement: (4, 4) T_parent_link where the joint is at zero.
+        bounds: limits of the joint.
+        body: mass properties in the link's frame.
+        shapes: in the link's frame.
+    """
+
+    joint: str
+    name: str
+    parent: str
+    kind: JointKind
+    placement: Array
+    bounds: JointBounds
+    body: BodyInertia
     shapes: tuple[Shape, ...] = ()
 
 
@@ -101,20 +124,38 @@ def chain_robot(
         grasp: name of the massless link at the end of the chain, at the last DH frame.
         attached: further fixed links.
     """
-    links, joints = [Element("link", name="world")], []
-    parent, tail = root.name, np.eye(4)
+    moving, parent, tail = [], root.name, np.eye(4)
     for row, body in zip(chain.rows, chain.inertias, strict=True):
-        link = link_name(chain.name, row.name)
-        joint = _joint(joint_name(chain.name, row.name), row.kind, parent, link, tail @ row_origin(row))
-        SubElement(joint, "axis", xyz="0.0 0.0 1.0")
-        limit = asdict(bounds[row.name])
-        SubElement(joint, "limit", {key: urdf_numbers(limit[key]) for key in LIMITS})
-        joints.append(joint)
+        name, joint, placement = (
+            link_name(chain.name, row.name),
+            joint_name(chain.name, row.name),
+            tail @ row_origin(row),
+        )
         # The chain states its bodies in DH frames, after the row's tail; a URDF link's frame is before it.
         tail = row_tail(row)
-        links.append(_link(link, body.transformed(tail[:3, :3], tail[:3, 3]), shapes.get(row.name, ())))
-        parent = link
-    return _robot(chain.name, links, (root, *attached, FixedLink(grasp, parent, tail)), joints)
+        own, drawn = body.transformed(tail[:3, :3], tail[:3, 3]), tuple(shapes.get(row.name, ()))
+        moving.append(MovingLink(joint, name, parent, row.kind, placement, bounds[row.name], own, drawn))
+        parent = name
+    return tree_robot(chain.name, moving, (root, *attached, FixedLink(grasp, parent, tail)))
+
+
+def tree_robot(name: str, moving: Sequence[MovingLink], fixed: Sequence[FixedLink]) -> Element:
+    """Return the URDF of a tree of links that stands on the link ``world``.
+
+    Args:
+        name: of the robot.
+        moving: links that joints move, parents before children.
+        fixed: links that do not move against their parents; one at least has the parent ``world``.
+    """
+    links, joints = [Element("link", name="world")], []
+    for item in moving:
+        joint = _joint(item.joint, item.kind, item.parent, item.name, item.placement)
+        SubElement(joint, "axis", xyz="0.0 0.0 1.0")
+        limit = asdict(item.bounds)
+        SubElement(joint, "limit", {key: urdf_numbers(limit[key]) for key in LIMITS})
+        joints.append(joint)
+        links.append(_link(item.name, item.body, item.shapes))
+    return _robot(name, links, fixed, joints)
 
 
 def body_robot(name: str, body: BodyInertia, shapes: Sequence[Shape], fixed: Sequence[FixedLink]) -> Element:

@@ -11,7 +11,14 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = ROOT / "scripts" / "export_models.py"
-NAMES = ("human_arm.urdf", "human_arm_numbers.md", "sawyer.urdf", "table.urdf")
+NAMES = (
+    "human_arm.urdf",
+    "human_arm_numbers.md",
+    "whole_body.urdf",
+    "whole_body_numbers.md",
+    "sawyer.urdf",
+    "table.urdf",
+)
 
 
 def _run(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -42,7 +49,8 @@ def test_check_tells_a_changed_file(exported):
 
 
 def test_committed_models_load_from_file():
-    """Oracle: Pinocchio's URDF parser; degrees of freedom of Tables 2 and 3 and of a free body."""
+    """Oracle: Pinocchio's URDF parser; degrees of freedom of Tables 2 and 3, of the whole person and of a free body."""
+    assert pin.buildModelFromUrdf(str(ROOT / "models" / "whole_body.urdf")).nv == 20
     assert pin.buildModelFromUrdf(str(ROOT / "models" / "human_arm.urdf")).nv == 13
     assert pin.buildModelFromUrdf(str(ROOT / "models" / "sawyer.urdf")).nv == 10
     assert pin.buildModelFromUrdf(str(ROOT / "models" / "table.urdf"), pin.JointModelFreeFlyer()).nv == 6

@@ -7,7 +7,7 @@ from math import pi
 
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Sex, Subject
-from liftopt.multibody.sources import ANSUR_II, DE_LEVA_1996, DE_LEVA_AND_ANSUR, Source
+from liftopt.multibody.sources import ANSUR_II, DE_LEVA_1996, DE_LEVA_AND_ANSUR, DE_LEVA_BELOW_OMPHALION, Source
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,7 @@ DIMENSIONS: dict[Sex, dict[str, Regression]] = {
         "biacromialbreadth": Regression(0.20459, 0.09168, 0.0005855),
         "lateralmalleolusheight": Regression(0.01173, 0.03098, 7.91e-05),
         "footlength": Regression(0.04493, 0.12038, 0.0001735),
+        "balloffootlength": Regression(0.03428, 0.08808, 0.00014),
         "footbreadthhorizontal": Regression(0.05585, 0.01802, 0.000168),
         "headbreadth": Regression(0.15656, -0.00861, 0.0001508),
         "headlength": Regression(0.14473, 0.02454, 0.0001366),
@@ -55,6 +56,7 @@ DIMENSIONS: dict[Sex, dict[str, Regression]] = {
         "biacromialbreadth": Regression(0.13199, 0.12829, 0.0003607),
         "lateralmalleolusheight": Regression(0.00692, 0.03381, 1.13e-05),
         "footlength": Regression(0.03785, 0.11804, 0.0002393),
+        "balloffootlength": Regression(0.02964, 0.08541, 0.0001965),
         "footbreadthhorizontal": Regression(0.05769, 0.01382, 0.0001847),
         "headbreadth": Regression(0.13512, 0.00368, 9.81e-05),
         "headlength": Regression(0.1343, 0.02787, 0.0001496),
@@ -77,7 +79,7 @@ DIMENSIONS: dict[Sex, dict[str, Regression]] = {
 # Height of suprasternale above the shoulder joint centres, over stature: de Leva's 'trunk' less 'trunk3' length.
 SUPRASTERNALE_ABOVE_SHOULDER: dict[Sex, float] = {"male": 0.00942, "female": 0.0181}
 # Half the distance between the hip joint centres, over hip breadth, and the heel's distance behind the ankle, over foot
-# length. Chosen for this model; both only place the resting legs.
+# length. Chosen for this model.
 HIP_JOINT_SPREAD, HEEL_BEHIND_ANKLE = 0.25, 0.25
 
 LINK_SOURCES: dict[str, Source] = {
@@ -87,6 +89,11 @@ LINK_SOURCES: dict[str, Source] = {
     "L4": DE_LEVA_1996,  # shoulder to elbow joint centre
     "L5": DE_LEVA_1996,  # elbow to wrist joint centre
     "L6": DE_LEVA_1996,  # wrist joint centre to third metacarpale, where the hand grips
+}
+JOINT_SOURCES: dict[str, Source] = {
+    "hip": DE_LEVA_BELOW_OMPHALION,
+    "knee": DE_LEVA_BELOW_OMPHALION,
+    "ankle": ANSUR_II,  # lateral malleolus
 }
 
 

@@ -27,27 +27,53 @@ def human_bodies(subject: Subject) -> dict[str, BodyInertia]:
     Frame: the upright zero pose in world axes, feet at the origin, X forward, Y to the left, Z up. The pelvis and
     both legs stand on GT3 and do not move; the trunk with head and the passive left arm, which hangs, follows Q3.
     """
-    arm = _arm(subject, RIGHT)
-    return {
-        "GT3": _lower_body(subject),
-        "Q3": _trunk(subject),
-        "Q6": arm["upper_arm"],
-        "Q8": arm["forearm"],
-        "Q10": arm["hand"],
-    }
-
-
-def _lower_body(subject: Subject) -> BodyInertia:
-    at = landmarks(subject)
-    body = hanging_segment(subject, "lower_trunk", _axis(at.omphalion), at.omphalion - at.hip)
-    foot_length = dimension(subject, "footlength")
+    arm, lower = _arm(subject, RIGHT), _pelvis(subject)
     for side in (LEFT, RIGHT):
-        y = side * HIP_JOINT_SPREAD * dimension(subject, "hipbreadth")
-        heel = np.array([-HEEL_BEHIND_ANKLE * foot_length, y, at.ankle / 2.0])
-        body += hanging_segment(subject, "thigh", np.array([0.0, y, at.hip]), at.hip - at.knee)
-        body += hanging_segment(subject, "shank", np.array([0.0, y, at.knee]), at.knee - at.ankle)
-        body += standing_foot(subject, heel, foot_length)
-    return body
+        for part in _leg(subject, side).values():
+            lower += part
+    trunk = _trunk(subject)
+    for part in _arm(subject, LEFT).values():
+        trunk += part
+    return {"GT3": lower, "Q3": trunk, "Q6": arm["upper_arm"], "Q8": arm["forearm"], "Q10": arm["hand"]}
+
+
+def whole_bodies(subject: Subject) -> dict[str, BodyInertia]:
+    """Return the same mass with legs and arms that move, by joint; the feet rest and are ``"feet"``.
+
+    Frame as above. Both legs move as one in the sagittal plane: a body of the legs is the two of them.
+    """
+    left, right = _leg(subject, LEFT), _leg(subject, RIGHT)
+    bodies = {
+        "feet": left["foot"] + right["foot"],
+        "ankle": left["shank"] + right["shank"],
+        "knee": left["thigh"] + right["thigh"],
+        "hip": _pelvis(subject),
+        "Q3": _trunk(subject),
+    }
+    for side, word in ((RIGHT, "right"), (LEFT, "left")):
+        arm = _arm(subject, side)
+        bodies |= {
+            f"{word}_Q6": arm["upper_arm"],
+            f"{word}_Q8": arm["forearm"],
+            f"{word}_Q10": arm["hand"],
+        }
+    return bodies
+
+
+def _pelvis(subject: Subject) -> BodyInertia:
+    at = landmarks(subject)
+    return hanging_segment(subject, "lower_trunk", _axis(at.omphalion), at.omphalion - at.hip)
+
+
+def _leg(subject: Subject, side: float) -> dict[str, BodyInertia]:
+    at, foot_length = landmarks(subject), dimension(subject, "footlength")
+    y = side * HIP_JOINT_SPREAD * dimension(subject, "hipbreadth")
+    heel = np.array([-HEEL_BEHIND_ANKLE * foot_length, y, at.ankle / 2.0])
+    return {
+        "thigh": hanging_segment(subject, "thigh", np.array([0.0, y, at.hip]), at.hip - at.knee),
+        "shank": hanging_segment(subject, "shank", np.array([0.0, y, at.knee]), at.knee - at.ankle),
+        "foot": standing_foot(subject, heel, foot_length),
+    }
 
 
 def _trunk(subject: Subject) -> BodyInertia:
@@ -56,8 +82,6 @@ def _trunk(subject: Subject) -> BodyInertia:
     body = hanging_segment(subject, "middle_trunk", _axis(at.xiphion), at.xiphion - at.omphalion)
     body += hanging_segment(subject, "upper_trunk", _axis(at.suprasternale), at.suprasternale - at.xiphion)
     body += hanging_segment(subject, "head", _axis(at.vertex), head_length)
-    for part in _arm(subject, LEFT).values():
-        body += part
     return body
 
 

@@ -35,41 +35,65 @@ BESIDE_ARM = 0.004  # between the trunk and a hanging arm [m]; chosen for this m
 
 
 def human_shapes(subject: Subject) -> dict[str, tuple[Shape, ...]]:
-    """Return the shapes of the subject by the DH row that moves them; frame: the upright zero pose, world axes."""
+    """Return the shapes of the subject by the DH row that moves them; frame: the upright zero pose, world axes.
+
+    The right palm faces ahead, as where its joints are zero; the left arm rests, its palm to the thigh.
+    """
     upper_arm, forearm, hand = _arm(subject, RIGHT, "right")
+    left, right = _leg(subject, LEFT, "left"), _leg(subject, RIGHT, "right")
     return {
-        "GT3": _lower_body(subject),
-        "Q3": _trunk(subject) + _arm(subject, LEFT, "left"),
+        "GT3": (*_pelvis(subject), *left, *right),
+        "Q3": _trunk(subject) + _arm(subject, LEFT, "left", palm_ahead=False),
         "Q6": (upper_arm,),
         "Q8": (forearm,),
         "Q10": (hand,),
     }
 
 
-def _lower_body(subject: Subject) -> tuple[Shape, ...]:
-    at = landmarks(subject)
-    breadth = dimension(subject, "hipbreadth")
-    foot = np.array([dimension(subject, "footlength"), dimension(subject, "footbreadthhorizontal"), at.ankle])
+def whole_shapes(subject: Subject) -> dict[str, tuple[Shape, ...]]:
+    """Return the shapes of the subject whose legs and arms move, by joint; the feet rest and are ``"feet"``."""
+    (left_thigh, left_shank, left_foot), (right_thigh, right_shank, right_foot) = (
+        _leg(subject, side, name) for side, name in SIDES
+    )
+    shapes: dict[str, tuple[Shape, ...]] = {
+        "feet": (left_foot, right_foot),
+        "ankle": (left_shank, right_shank),
+        "knee": (left_thigh, right_thigh),
+        "hip": _pelvis(subject),
+        "Q3": _trunk(subject),
+    }
+    for side, name in ((RIGHT, "right"), (LEFT, "left")):
+        upper_arm, forearm, hand = _arm(subject, side, name)
+        shapes |= {f"{name}_Q6": (upper_arm,), f"{name}_Q8": (forearm,), f"{name}_Q10": (hand,)}
+    return shapes
+
+
+def _pelvis(subject: Subject) -> tuple[Shape, ...]:
+    at, breadth = landmarks(subject), dimension(subject, "hipbreadth")
     depth = 0.85 * dimension(subject, "buttockdepth")
     # It ends at the base of the spine, above which the trunk moves.
-    shapes = _rounded("hip", TROUSERS, 0.95 * breadth, depth, at.hip, at.omphalion, _room(subject))
+    return tuple(_rounded("hip", TROUSERS, 0.95 * breadth, depth, at.hip, at.omphalion, _room(subject)))
+
+
+def _leg(subject: Subject, side: float, name: str) -> tuple[Capsule, Capsule, Box]:
+    """Return thigh, shank and foot."""
+    at, breadth = landmarks(subject), dimension(subject, "hipbreadth")
+    foot = np.array([dimension(subject, "footlength"), dimension(subject, "footbreadthhorizontal"), at.ankle])
     thigh = min(THIGH * girth_radius(subject, "thighcircumference"), _room(subject))
     inside = min(HIP_JOINT_SPREAD * breadth, _room(subject) - thigh)
-    for side, name in SIDES:
-        y = side * HIP_JOINT_SPREAD * breadth
-        knee, ankle = (np.array([0.0, y, z]) for z in (at.knee, at.ankle))
-        top, bottom = (np.array([0.0, side * inside, z]) for z in (at.hip, at.knee))
-        shapes += [
-            Capsule(f"{name}_thigh", TROUSERS, top, bottom, thigh),
-            Capsule(f"{name}_shank", TROUSERS, knee, ankle, SHANK * girth_radius(subject, "calfcircumference")),
-            box_at(
-                f"{name}_foot",
-                SHOES,
-                np.array([(0.5 - HEEL_BEHIND_ANKLE) * foot[0], y, at.ankle / 2.0]),
-                (float(foot[0]), float(foot[1]), float(foot[2])),
-            ),
-        ]
-    return tuple(shapes)
+    y = side * HIP_JOINT_SPREAD * breadth
+    knee, ankle = (np.array([0.0, y, z]) for z in (at.knee, at.ankle))
+    top, bottom = (np.array([0.0, side * inside, z]) for z in (at.hip, at.knee))
+    return (
+        Capsule(f"{name}_thigh", TROUSERS, top, bottom, thigh),
+        Capsule(f"{name}_shank", TROUSERS, knee, ankle, SHANK * girth_radius(subject, "calfcircumference")),
+        box_at(
+            f"{name}_foot",
+            SHOES,
+            np.array([(0.5 - HEEL_BEHIND_ANKLE) * foot[0], y, at.ankle / 2.0]),
+            (float(foot[0]), float(foot[1]), float(foot[2])),
+        ),
+    )
 
 
 def _trunk(subject: Subject) -> tuple[Shape, ...]:
@@ -123,7 +147,7 @@ def _room(subject: Subject) -> float:
     return link_lengths(subject).l3 - arm - BESIDE_ARM
 
 
-def _arm(subject: Subject, side: float, name: str) -> tuple[Capsule, Capsule, Box]:
+def _arm(subject: Subject, side: float, name: str, *, palm_ahead: bool = True) -> tuple[Capsule, Capsule, Box]:
     lengths = link_lengths(subject)
     shoulder = np.array([0.0, side * lengths.l3, lengths.l1 + lengths.l2])
     elbow = shoulder - _axis(lengths.l4)
@@ -131,8 +155,7 @@ def _arm(subject: Subject, side: float, name: str) -> tuple[Capsule, Capsule, Bo
     upper, lower = (girth_radius(subject, f"{part}circumferenceflexed") for part in ("biceps", "forearm"))
     middle = wrist - _axis(lengths.l6)  # third metacarpale: about the middle of the hand
     breadth = dimension(subject, "handbreadth")
-    # The right palm faces ahead, as where its joints are zero; the left arm rests, its palm to the thigh.
-    across = (HAND_THICKNESS, breadth) if side == RIGHT else (breadth, HAND_THICKNESS)
+    across = (HAND_THICKNESS, breadth) if palm_ahead else (breadth, HAND_THICKNESS)
     size = (*across, 2.0 * lengths.l6)
     return (
         Capsule(f"{name}_upper_arm", SHIRT, shoulder, elbow, UPPER_ARM * upper),

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.multibody.person.anthropometry import LINK_SOURCES, link_lengths
-from liftopt.multibody.person.bodies import BODY_SOURCE, human_bodies
-from liftopt.multibody.person.comfort import COMFORTS, human_comfort
-from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
-from liftopt.multibody.person.strength import STRENGTHS
+from liftopt.multibody.agent import Comfort
+from liftopt.multibody.dh import BodyInertia
+from liftopt.multibody.person.anthropometry import JOINT_SOURCES, LINK_SOURCES, landmarks, link_lengths
+from liftopt.multibody.person.bodies import BODY_SOURCE, human_bodies, whole_bodies
+from liftopt.multibody.person.comfort import COMFORTS, WHOLE_COMFORTS, JointComfort, human_comfort, whole_comfort
+from liftopt.multibody.person.leg_strength import LegStrength
+from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE, JointRange
+from liftopt.multibody.person.stance import ASIDE_SOURCE, BACK_SOURCE, FRICTION_SOURCE, FRONT_SOURCE, human_stance
+from liftopt.multibody.person.strength import STRENGTHS, Strength
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_joints import WHOLE_RANGES, WHOLE_STRENGTHS
 from liftopt.multibody.sources import Source
 
 
@@ -32,7 +38,26 @@ def subject_quantities(subject: Subject) -> tuple[Quantity, ...]:
     Bodies are stated about their own centre of mass in the upright zero pose (X forward, Y to the left, Z up, from
     the feet); angles are in deg.
     """
-    return (*_lengths(subject), *_bodies(subject), *_ranges(), *_comforts(), *_strengths(subject))
+    return (
+        *_lengths(subject),
+        *_bodies(human_bodies(subject)),
+        *_ranges(RANGES),
+        *_comforts(COMFORTS, human_comfort()),
+        *_strengths(STRENGTHS, subject),
+    )
+
+
+def whole_quantities(subject: Subject) -> tuple[Quantity, ...]:
+    """Return all numbers of the subject's model with legs and two arms; the bodies of the legs are both legs'."""
+    return (
+        *_lengths(subject),
+        *_heights(subject),
+        *_stance(subject),
+        *_bodies(whole_bodies(subject)),
+        *_ranges(WHOLE_RANGES),
+        *_comforts(WHOLE_COMFORTS, whole_comfort()),
+        *_strengths(WHOLE_STRENGTHS, subject),
+    )
 
 
 def _lengths(subject: Subject) -> list[Quantity]:
@@ -40,9 +65,25 @@ def _lengths(subject: Subject) -> list[Quantity]:
     return [Quantity("length", name, lengths[name.lower()], "m", source) for name, source in LINK_SOURCES.items()]
 
 
-def _bodies(subject: Subject) -> list[Quantity]:
+def _heights(subject: Subject) -> list[Quantity]:
+    heights = vars(landmarks(subject))
+    return [Quantity("height", joint, heights[joint], "m", source) for joint, source in JOINT_SOURCES.items()]
+
+
+def _stance(subject: Subject) -> list[Quantity]:
+    stance = human_stance(subject)
+    (back, front, aside), *_ = stance.soles
+    return [
+        Quantity("stance", "soles from", back, "m", BACK_SOURCE),
+        Quantity("stance", "soles to", front, "m", FRONT_SOURCE),
+        Quantity("stance", "soles to either side", aside, "m", ASIDE_SOURCE),
+        Quantity("stance", "friction", stance.friction, "", FRICTION_SOURCE),
+    ]
+
+
+def _bodies(bodies: Mapping[str, BodyInertia]) -> list[Quantity]:
     rows = []
-    for joint, body in human_bodies(subject).items():
+    for joint, body in bodies.items():
         inertia = {
             f"I{axes}": float(body.inertia["xyz".index(axes[0]), "xyz".index(axes[1])])
             for axes in ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -56,9 +97,9 @@ def _bodies(subject: Subject) -> list[Quantity]:
     return rows
 
 
-def _ranges() -> list[Quantity]:
+def _ranges(ranges: Iterable[JointRange]) -> list[Quantity]:
     rows = []
-    for item in RANGES:
+    for item in ranges:
         rows += [
             Quantity("range of motion", f"{item.joint} {item.negative}", item.lower, "deg", item.lower_source),
             Quantity("range of motion", f"{item.joint} {item.positive}", item.upper, "deg", item.upper_source),
@@ -67,11 +108,10 @@ def _ranges() -> list[Quantity]:
     return rows
 
 
-def _comforts() -> list[Quantity]:
-    rows, comfort = [], human_comfort()
-    neutral = np.degrees(comfort.neutral)
+def _comforts(items: Sequence[JointComfort], comfort: Comfort) -> list[Quantity]:
+    rows, neutral = [], np.degrees(comfort.neutral)
     lower, upper = neutral - np.degrees(comfort.room_lower), neutral + np.degrees(comfort.room_upper)
-    for j, item in enumerate(COMFORTS):
+    for j, item in enumerate(items):
         values = {"neutral": (neutral[j], "deg"), "from": (lower[j], "deg"), "to": (upper[j], "deg")}
         values["weight"] = (comfort.weight[j], "")
         for name, (value, unit) in values.items():
@@ -79,8 +119,8 @@ def _comforts() -> list[Quantity]:
     return rows
 
 
-def _strengths(subject: Subject) -> list[Quantity]:
+def _strengths(strengths: Iterable[Strength | LegStrength], subject: Subject) -> list[Quantity]:
     return [
-        Quantity("strength", f"{item.joint} {item.motion}", item.sign * item.torque[subject.sex], "Nm", item.source)
-        for item in STRENGTHS
+        Quantity("strength", f"{item.joint} {item.motion}", item.sign * item.of(subject), "Nm", item.source)
+        for item in strengths
     ]

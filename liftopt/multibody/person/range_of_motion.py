@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from liftopt.multibody.sources import AAOS, AAOS_SPINE, MODEL_CHOICE, SHOULDER_ADDUCTION, Source
+from liftopt.multibody.sources import (
+    AAOS,
+    AAOS_LEGS,
+    AAOS_SPINE,
+    MODEL_CHOICE,
+    SHOULDER_ADDUCTION,
+    STANDING_ANKLE,
+    Source,
+)
 
 VELOCITY_SOURCE: Source = MODEL_CHOICE
 
 
 @dataclass(frozen=True)
 class JointRange:
-    """Range of one joint of Table 2 and the motions that its signs stand for.
+    """Range of one joint and the motions that its signs stand for.
 
     Attributes:
-        joint: ``"Q1"`` to ``"Q10"``.
+        joint: ``"Q1"`` to ``"Q10"`` of Table 2; of the legs ``"ankle"``, ``"knee"``, ``"hip"``.
         negative, positive: anatomical motion of a joint angle below and above zero.
         lower, upper: end of the range in either direction [deg].
         lower_source, upper_source: of each.
@@ -44,4 +52,14 @@ RANGES: tuple[JointRange, ...] = (
     JointRange("Q8", "pronation", "supination", -160.0, 0.0, AAOS, AAOS, 5.0),
     JointRange("Q9", "wrist flexion", "wrist extension", -80.0, 70.0, AAOS, AAOS, 5.0),
     JointRange("Q10", "radial deviation", "ulnar deviation", -20.0, 30.0, AAOS, AAOS, 5.0),
+)
+TRUNK_JOINTS = 3  # the first of the table, which both arms share
+
+# Both legs as one, on feet that stay. Standing on it, an ankle bends further than the 20 deg that AAOS gives it in the
+# air, and that decides how deep a squat is. Muscles that cross two joints are left out: with the knee straight an ankle
+# bends by 25 deg only (Baumbach et al.), and the hip by less than here (the hamstrings).
+LEG_RANGES: tuple[JointRange, ...] = (
+    JointRange("ankle", "plantar flexion", "dorsiflexion", -50.0, 39.0, AAOS_LEGS, STANDING_ANKLE, 4.0),
+    JointRange("knee", "knee extension", "knee flexion", 0.0, 135.0, AAOS_LEGS, AAOS_LEGS, 6.0),
+    JointRange("hip", "hip extension", "hip flexion", -30.0, 120.0, AAOS_LEGS, AAOS_LEGS, 5.0),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from liftopt.multibody.person.subject import Sex
+from liftopt.multibody.person.subject import Sex, Subject
 from liftopt.multibody.sources import SCALED_GYMNAST, STOBBE_1982, Source
 
 
@@ -25,6 +25,10 @@ class Strength:
     motion: str
     torque: dict[Sex, float]
     source: Source
+
+    def of(self, subject: Subject) -> float:
+        """Return the torque of a subject [Nm], positive."""
+        return self.torque[subject.sex]
 
 
 def _strength(joint: str, sign: int, motion: str, male: float, female: float, source: Source) -> Strength:
