@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from liftopt.ergonomics.acgih import acgih_limit
+from liftopt.ergonomics.coupling import coupling_of
+from liftopt.ergonomics.lifting_guides import acgih_measure, iso_measure, niosh_measure
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.niosh import niosh, niosh_terms
 from liftopt.ergonomics.strength import strength_use
@@ -115,3 +117,54 @@ def alone(solution: Any) -> Callable[..., Any]:
 def _holding(scenario: Any, points: dict[str, tuple[float, float, float]]) -> Any:
     """Return a scenario whose hands hold the object at these points, by the names of the grasps."""
     return scenario.model_copy(update={"object": scenario.object.model_copy(update={"grasps": points})})
+
+
+def test_one_who_lifts_alone_with_both_hands_is_in_scope(alone: Callable[..., Any]) -> None:
+    """By hand: fingers under a box of 0.35 x 0.25 m are a fair coupling: 0.95 below 75 cm, 1 from there on."""
+    lift = alone()
+    measures = {measure.code: measure for measure in (
+        niosh_measure(niosh(lift, lift.agents[0])), acgih_measure(lift, lift.agents[0], niosh(lift, lift.agents[0])),
+        iso_measure(lift),
+    )}  # fmt: skip
+    equation = niosh(lift, lift.agents[0])
+    assert equation.out_of_scope == ()
+    assert (measures["niosh"].scope, measures["acgih"].scope) == ("applies", "applies")
+    assert (equation.coupling, equation.origin.cm, equation.destination.cm) == ("fair", 1.0, 1.0)
+    assert niosh_terms(40.0, 30.0, 50.0, 0.0, "fair").cm == 0.95
+    assert "force of both hands" in measures["acgih"].reading
+    assert "Outside" not in measures["niosh"].reading
+    assert "shared" not in measures["iso_11228_1"].reading
+
+
+def test_the_middle_between_two_hands_counts_as_the_one_hand_did(alone: Callable[..., Any], solution: Any) -> None:
+    one, two = niosh(solution, solution["human"]), niosh(alone(), alone().agents[0])
+    assert (two.hands, two.is_shared) == (2, False)
+    assert two.origin.horizontal == pytest.approx(one.origin.horizontal)
+    assert two.destination.asymmetry == pytest.approx(one.destination.asymmetry, abs=1e-9)
+    assert two.largest_load == pytest.approx(one.largest_load)
+
+
+@pytest.mark.parametrize(
+    ("held", "wanted"),
+    [
+        ({}, "fair"),
+        ({"width": 0.41}, "poor"),
+        ({"height": 0.31}, "poor"),
+        ({"friction": 0.5}, "poor"),  # a flat hand
+        ({"z": 0.0}, "poor"),  # at the sides
+    ],
+    ids=str,
+)
+def test_coupling_by_box_and_hold(alone: Callable[..., Any], held: dict[str, float], wanted: str) -> None:
+    lift = alone(**held)
+    assert coupling_of(lift, lift.agents[0]) == wanted
+
+
+def test_both_hands_of_a_shared_lift_are_an_indication(alone: Callable[..., Any], solution: Any) -> None:
+    lift = alone()
+    shared = replace(lift, agents=(lift.agents[0], solution["robot"]))
+    equation = niosh(shared, shared.agents[0])
+    assert [why.split(":")[0] for why in equation.out_of_scope] == ["it is not for a load that is shared"]
+    assert niosh_measure(equation).scope == "indicative"
+    assert "A partner who gives way" in niosh_measure(equation).reading
+    assert acgih_measure(shared, shared.agents[0], equation).scope == "indicative"

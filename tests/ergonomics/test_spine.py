@@ -22,6 +22,7 @@ from liftopt.multibody.person.anthropometry import landmarks, link_lengths
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.segments import SEGMENTS, segment_mass
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory
 from liftopt.types import Array
@@ -30,7 +31,7 @@ GRAVITY = 9.81
 MAN, WOMAN = Subject(1.75, 75.0, "male"), Subject(1.63, 62.0, "female")
 SLOPE = np.radians(40.0)
 STEP = 1e-4  # [s] of the finite differences
-BODIES = (human_agent,)
+BODIES = (human_agent, whole_human_agent)
 
 
 def still(agent: Agent, force: tuple[float, float, float] = (0.0, 0.0, 0.0), **degrees: float) -> AgentTrajectory:
