@@ -94,10 +94,9 @@ def test_strength_use_is_torque_over_the_limit_in_its_direction(posed: Callable[
 def alone(solution: Any) -> Callable[..., Any]:
     """Return a function that gives the person of the lift without the robot, slow, with both hands on a small box."""
 
-    def lift(width: float = 0.35, height: float = 0.25, z: float | None = None, friction: float | None = None) -> Any:
-        human, below = solution["human"], -height / 2.0 if z is None else z
-        grasp = replace(human.grasps[0], friction=friction)
-        apart = np.array([0.0, 0.15, 0.0])
+    def lift(hold: str = "edge", width: float = 0.35, height: float = 0.25, friction: float | None = None) -> Any:
+        human = solution["human"]
+        grasp, apart = replace(human.grasps[0], friction=friction), np.array([0.0, 0.15, 0.0])
         # The middle between the hands is where the one hand was, and they share its force.
         person = replace(
             human,
@@ -106,27 +105,26 @@ def alone(solution: Any) -> Callable[..., Any]:
             grasp_force=np.repeat(human.grasp_force / 2.0, 2, axis=1),
             grasp_moment=np.repeat(human.grasp_moment / 2.0, 2, axis=1),
         )
-        points = {name: (0.0, y, below) for name, y in (("human_right", -0.15), ("human_left", 0.15))}
-        scenario = solution.scenario.replace({"object.width": width, "object.height": height})
-        scenario = _holding(scenario, points)
+        changes = {"human.body": "whole", "human.hands": ["right", "left"], "object.width": width}
+        holds = {f"object.grasps.human_{hand}": hold for hand in ("right", "left")}
+        scenario = solution.scenario.replace({**changes, **holds, "object.height": height})
         return replace(solution, scenario=scenario, agents=(person,), time=4.0 * solution.time)
 
     return lift
 
 
-def _holding(scenario: Any, points: dict[str, tuple[float, float, float]]) -> Any:
-    """Return a scenario whose hands hold the object at these points, by the names of the grasps."""
-    return scenario.model_copy(update={"object": scenario.object.model_copy(update={"grasps": points})})
+def aside(lift: Any) -> np.ndarray:
+    """Return how far the middle between the hands is to the left (K, 1, 1) [m]."""
+    return np.asarray(lift.agents[0].p_world_hold[:, None, 1:2])
 
 
 def test_one_who_lifts_alone_with_both_hands_is_in_scope(alone: Callable[..., Any]) -> None:
     """By hand: fingers under a box of 0.35 x 0.25 m are a fair coupling: 0.95 below 75 cm, 1 from there on."""
     lift = alone()
-    measures = {measure.code: measure for measure in (
-        niosh_measure(niosh(lift, lift.agents[0])), acgih_measure(lift, lift.agents[0], niosh(lift, lift.agents[0])),
-        iso_measure(lift),
-    )}  # fmt: skip
-    equation = niosh(lift, lift.agents[0])
+    person = replace(lift.agents[0], grasp_position=lift.agents[0].grasp_position - [0.0, 1.0, 0.0] * aside(lift))
+    equation = niosh(lift, person)
+    told = (niosh_measure(equation), acgih_measure(lift, person, equation), iso_measure(lift))
+    measures = {measure.code: measure for measure in told}
     assert equation.out_of_scope == ()
     assert (measures["niosh"].scope, measures["acgih"].scope) == ("applies", "applies")
     assert (equation.coupling, equation.origin.cm, equation.destination.cm) == ("fair", 1.0, 1.0)
@@ -150,8 +148,12 @@ def test_the_middle_between_two_hands_counts_as_the_one_hand_did(alone: Callable
         ({}, "fair"),
         ({"width": 0.41}, "poor"),
         ({"height": 0.31}, "poor"),
+        ({"height": 0.05}, "poor"),  # a plate
         ({"friction": 0.5}, "poor"),  # a flat hand
-        ({"z": 0.0}, "poor"),  # at the sides
+        ({"hold": "side"}, "poor"),
+        ({"hold": "corner"}, "poor"),
+        ({"hold": "bottom"}, "fair"),
+        ({"hold": "handle", "width": 0.6, "height": 0.4}, "good"),
     ],
     ids=str,
 )
