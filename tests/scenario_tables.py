@@ -15,6 +15,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.scenario.obstacles import Obstacle
 
 TEAM = {"human": "person", "robot": "robot"}
+LEFT_OUT = ("agents", "grasps", "kind", "body", "hands")  # not each for itself
 
 
 def tables() -> st.SearchStrategy[dict[str, Any]]:
@@ -25,7 +26,7 @@ def tables() -> st.SearchStrategy[dict[str, Any]]:
 
 def section(of: type[BaseModel]) -> st.SearchStrategy[dict[str, Any]]:
     """Return tables of one section."""
-    fields = {name: field for name, field in of.model_fields.items() if name not in ("agents", "grasps", "kind")}
+    fields = {name: field for name, field in of.model_fields.items() if name not in LEFT_OUT}
     kind = {"kind": st.just(of.model_fields["kind"].default)} if "kind" in of.model_fields else {}
     given = {name: _entry(name, field) for name, field in fields.items() if not _may_be_left_out(field)}
     left_out = {name: _entry(name, field) for name, field in fields.items() if _may_be_left_out(field)}

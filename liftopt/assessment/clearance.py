@@ -9,7 +9,7 @@ import numpy as np
 from liftopt.assessment.who import HANDS, whose
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import obstacles_of
-from liftopt.scenario.placement import grasp_points
+from liftopt.scenario.grasps import grasp_points
 from liftopt.scenario.task import GraspPlace
 from liftopt.solution.checks import TOUCH
 from liftopt.solution.clearance import WITHIN_BODIES, Clearance, PairClearance
@@ -113,10 +113,11 @@ def _fingers(fine: Solution) -> Iterator[Finding]:
     """Give where the fingers of a hand that holds the object from below have no room at one end of the lift."""
     under, points = -fine.scenario.object.height / 2.0, grasp_points(fine.scenario)
     for person in fine.persons:
-        if abs(points[person.name][2] - under) > TOUCH:
+        below_it = [i for i, grasp in enumerate(person.grasps) if abs(points[grasp.name][2] - under) <= TOUCH]
+        if not below_it:
             continue
         for k, end in ((0, "start"), (-1, "end")):
-            room, below = _room(fine, person, k)
+            room, below = min(_room(fine, person, i, k) for i in below_it)
             if room >= FINGERS:
                 continue
             hand, name = f"{whose(person.name)} {HANDS[PERSON]}", fine.object.name
@@ -137,13 +138,9 @@ def _fingers(fine: Solution) -> Iterator[Finding]:
             )
 
 
-def _room(fine: Solution, person: AgentTrajectory, k: int) -> tuple[float, str]:
-    """Return the least room below a person's grasp points [m] at a time, above the floor or an obstacle, and which."""
-    points = zip(person.grasp_position[k], person.grasps, strict=True)
-    return min(_room_below(fine, point, grasp.breadth) for point, grasp in points)
-
-
-def _room_below(fine: Solution, point: Array, breadth: float) -> tuple[float, str]:
+def _room(fine: Solution, person: AgentTrajectory, which: int, k: int) -> tuple[float, str]:
+    """Return the room below a grasp point [m] at a time, above the floor or an obstacle, and which."""
+    point, breadth = person.grasp_position[k, which], person.grasps[which].breadth
     room, below = float(point[2]), "floor"
     for obstacle in obstacles_of(fine.scenario):
         T_world_box, half = obstacle.T_joint_solid, np.array(obstacle.size) / 2.0

@@ -34,7 +34,7 @@ def scenario_text(args: argparse.Namespace) -> str:
     from liftopt.files.new_file import write_new
     from liftopt.lab.mocap.recorded_file import load_recorded
     from liftopt.lab.mocap.recorded_scenario import recorded_scenario
-    from liftopt.scenario.placement import edge_heights
+    from liftopt.scenario.grasps import grasp_heights
 
     lift = load_recorded(args.recorded)
     if args.lift is not None:
@@ -43,7 +43,7 @@ def scenario_text(args: argparse.Namespace) -> str:
     source = " ".join(lift.source.split())
     head = f"# Made from {source}; what stands for what: liftopt/lab/mocap/recorded_scenario.py.\n"
     write_new("--out", Path(args.out), head + scenario.to_toml())
-    (low, high), ends = edge_heights(scenario), ("start", "end")
+    (low, high), ends = grasp_heights(scenario), ("start", "end")
     near, far = (scenario.value(f"task.{end}.human_distance") for end in ends)
     return (
         f"{scenario.object.mass:g} kg from {low:g} to {high:g} m in {scenario.duration:g} s, "

@@ -1,7 +1,13 @@
-"""Where a box is held by default."""
+"""Where a box is held: places by name, and the two of the default."""
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
+# The bottom edge that faces its holder; underneath, in from that edge; a bottom corner of that edge; the middle of the
+# holder's right or left side; a handle there, near the top.
+Hold = Literal["edge", "bottom", "corner", "side", "handle"]
+HOLDS: tuple[Hold, ...] = get_args(Hold)
 Point = tuple[float, float, float]
 
 

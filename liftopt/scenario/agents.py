@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from liftopt.files.entries import entry, number
 from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
+from liftopt.scenario.hands import OF_BODY, Body, Hand, in_order, with_hands
 from liftopt.scenario.presets import NATURAL
 
 Kind = Literal["person", "robot"]
@@ -30,12 +31,23 @@ Listed = BeforeValidator(_as_tuple)  # TOML and JSON have lists where a model ha
 
 
 class Person(Section):
-    """A person who lifts with the right arm; the feet stand still."""
+    """A person who lifts; the feet stand still."""
 
     kind: Annotated[Literal["person"], entry("what the agent is")] = "person"
     stature: Annotated[float, number("height of the person", "m", 1.2, 2.2)]
     mass: Annotated[float, number("body mass of the person", "kg", 30.0, 200.0)]
     sex: Annotated[Literal["male", "female"], entry("whose segment data to use")]
+    body: Annotated[Body, entry("right arm and trunk on legs like posts, or the whole body")] = "arm"
+    hands: Annotated[
+        tuple[Hand, ...],
+        Field(min_length=1, default_factory=lambda: OF_BODY["arm"]),
+        AfterValidator(in_order),
+        Listed,
+        entry(
+            "which hands hold; by default the right one of an arm, both of a whole body",
+            'a list of "right" and "left"',
+        ),
+    ]
     position: Annotated[
         tuple[Length, Length] | None,
         Listed,
@@ -62,6 +74,11 @@ class Person(Section):
     contact: Annotated[Literal["grip", "flat"], entry("a hand that grips, or a flat one that only pushes up")] = "grip"
     friction: Annotated[float, number("friction coefficient under a flat hand", "", 0.01, 10.0)] = 0.5
     weight: Weight = OF_PERSON["weight"]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_hands(cls, values: object) -> object:
+        return with_hands(values)
 
 
 class Tool(Section):

@@ -1,18 +1,20 @@
-"""What is lifted: a box of even density, and where each agent holds it."""
+"""What is lifted: a box of even density, and where each hand holds it."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, ValidationError, WrapValidator
 
 from liftopt.errors import InputError
 from liftopt.files.entries import entry, number
 from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
+from liftopt.multibody.edges import HOLDS, Hold
 from liftopt.scenario.agents import NAME, NAMES, Listed
 
 Coordinate = Annotated[float, number("", "m", -2.0, 2.0)]
+Position = Annotated[tuple[Coordinate, Coordinate, Coordinate], Listed]
 
 
 def _safe(name: str) -> str:
@@ -21,8 +23,29 @@ def _safe(name: str) -> str:
     return name
 
 
+class HeldAt(Section):
+    """How a hand holds the object, and where if not in the usual place of such a hold."""
+
+    place: Annotated[Hold, entry("how the hand holds")] = "edge"
+    position: Annotated[
+        Position | None,
+        entry("of the grasp in the object's axes from its centre; by default by the place", "[x, y, z] in m"),
+    ] = None
+
+
+def _as_one(value: Any, handler: Any) -> Any:
+    """Check one of several forms, and refuse once for all of them."""
+    try:
+        return handler(value)
+    except ValidationError:
+        raise ValueError("no form of a grasp") from None
+
+
+Held = Annotated[Hold | Position | HeldAt, WrapValidator(_as_one)]
+
+
 class Box(Section):
-    """The object: a box of even density, held at the two bottom edges that face the two who lift it."""
+    """The object: a box of even density, held by default at the bottom edges that face those who lift it."""
 
     name: Annotated[str, AfterValidator(_safe), entry("what the object is called in results", NAMES)] = "table"
     mass: Annotated[float, number("mass of the object", "kg", 0.05, 50.0)]
@@ -30,9 +53,11 @@ class Box(Section):
     width: Annotated[float, number("extent to the side", "m", 0.02, 2.0)]
     height: Annotated[float, number("thickness", "m", 0.001, 1.0)]
     grasps: Annotated[
-        FrozenTable[Annotated[tuple[Coordinate, Coordinate, Coordinate], Listed]],
+        FrozenTable[Held],
         entry(
-            "where an agent holds it, in its axes from its centre; by default in the middle of the edge that faces it",
-            "a table of NAME = [x, y, z] in m",
+            "where a hand holds it, in its axes from its centre; by default at the edge that faces its agent",
+            "a table of NAME = [x, y, z] in m, of NAME = "
+            + ", ".join(f'"{hold}"' for hold in HOLDS)
+            + ", or of NAME = { place, position }",
         ),
     ] = FrozenTable()

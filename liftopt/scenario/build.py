@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
-from liftopt.multibody.agent import Agent, Grasp, LiftedObject
-from liftopt.multibody.dh import rotation_z
-from liftopt.multibody.person.human import HAND_UNDER_EDGE, Subject, human_agent
+from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.person.human import Subject, human_agent
+from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import Placement
-from liftopt.multibody.robots.sawyer import LEVEL_TOOL, sawyer_agent
+from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.solids import Solid, placed_box
 from liftopt.multibody.table import lifted_table
+from liftopt.scenario.agent_grasps import with_grasps
 from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.grasps import grasp_points, middle_of_grasps, middle_of_hands, placed_grasps
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import grasp_points, lead, stand_of
+from liftopt.scenario.placement import lead, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.types import Array
 
@@ -43,29 +44,31 @@ def agents_of(scenario: Scenario, urdfs: Mapping[str, str] | None = None) -> tup
 
 def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = None) -> Agent:
     """Return the agent of that name; ``urdfs`` as in ``agents_of``."""
-    who, urdf = scenario.agents[name], (urdfs or {}).get(name)
-    stand = stand_of(scenario, name)
-    place = Placement.at(*stand)
-    if isinstance(who, Person):
-        friction = who.friction if who.contact == "flat" else None
-        person = human_agent(subject_of(who), urdf, name=name, place=place)
-        holds = [_grasp(grasp, who, HAND_UNDER_EDGE, stand.yaw_deg) for grasp in person.grasps]
-        return replace(person, grasps=tuple(replace(hold, friction=friction) for hold in holds))
-    robot = sawyer_agent(
-        place=place,
-        base_height=who.height,
-        tool_length=who.tool.length,
-        tool_mass=who.tool.mass,
-        urdf=urdf,
-        name=name,
-    )
-    return replace(robot, grasps=tuple(_grasp(grasp, who, LEVEL_TOOL, stand.yaw_deg - 180.0) for grasp in robot.grasps))
+    return with_grasps(scenario, _bare_agent(scenario, name, (urdfs or {}).get(name)))
+
+
+def _bare_agent(scenario: Scenario, name: str, urdf: str | None) -> Agent:
+    """Return the agent with grasps that are not yet what the scenario says of them."""
+    who, place = scenario.agents[name], Placement.at(*stand_of(scenario, name))
+    if isinstance(who, Robot):
+        return sawyer_agent(
+            place=place,
+            base_height=who.height,
+            tool_length=who.tool.length,
+            tool_mass=who.tool.mass,
+            urdf=urdf,
+            name=name,
+        )
+    if who.body == "arm":
+        return human_agent(subject_of(who), urdf, name=name, place=place)
+    return whole_human_agent(subject_of(who), urdf, name=name, place=place, hands=who.hands)
 
 
 def agent_key(scenario: Scenario, name: str) -> Hashable:
     """Return all that an agent's model depends on: two scenarios with equal keys give the same agent."""
-    who = scenario.agents[name]
-    return name, tuple(value for key, value in who if key != "weight"), stand_of(scenario, name)
+    holds = tuple((hold.name, hold.hold, hold.quarters) for hold in placed_grasps(scenario) if hold.agent == name)
+    entries = tuple(value for key, value in scenario.agents[name] if key != "weight")
+    return name, entries, stand_of(scenario, name), holds
 
 
 def object_key(scenario: Scenario) -> Hashable:
@@ -103,11 +106,10 @@ def obstacles_of(scenario: Scenario) -> tuple[Solid, ...]:
 def task_of(scenario: Scenario) -> LiftTask:
     """Return the task: poses at both ends by the height and tilt of the grasp points, sideways free."""
     limits, objective = scenario.limits, scenario.objective
-    pitch, yaw = math.radians(limits.table_pitch_deg), math.radians(limits.table_yaw_deg)
-    # Point grasps on one line along X cannot turn the object about it: its roll is locked.
-    lines = {(y, z) for _, y, z in grasp_points(scenario).values()}
-    turnable = len(lines) > 1 or any(agent.grasp == "wrench" for agent in scenario.agents.values())
-    roll = math.radians(limits.table_roll_deg) if turnable else 0.0
+    turns = [math.radians(most) for most in (limits.table_roll_deg, limits.table_pitch_deg, limits.table_yaw_deg)]
+    if (locked := _unturnable_axis(scenario)) is not None:
+        turns[locked] = 0.0
+    roll, pitch, yaw = turns
     return LiftTask(
         duration=scenario.duration,
         start=_pose(scenario, scenario.task.start),
@@ -127,6 +129,14 @@ def task_of(scenario: Scenario) -> LiftTask:
     )
 
 
+def _unturnable_axis(scenario: Scenario) -> int | None:
+    """Return about which of its axes nobody can turn the object: point grasps on one line cannot about that line."""
+    if any(agent.grasp == "wrench" for agent in scenario.agents.values()):
+        return None
+    points = list(grasp_points(scenario).values())
+    return next((axis for axis in range(3) if len({point[:axis] + point[axis + 1 :] for point in points}) == 1), None)
+
+
 def _pace(scenario: Scenario) -> float:
     """Return the factor on squared accelerations: in preset natural, a slow lift is as smooth as a fast one.
 
@@ -142,33 +152,19 @@ def motions_of(scenario: Scenario, intervals: int | None = None) -> RestToRestSp
     return RestToRestSpline(scenario.solver.intervals if intervals is None else intervals, scenario.task.rest)
 
 
-def _grasp(grasp: Grasp, who: Person | Robot, reference: Array, turn_deg: float) -> Grasp:
-    """Return someone's grasp as the scenario has it.
-
-    Args:
-        grasp: which one.
-        who: holds the object.
-        reference: (3, 3) the hand's orientation in the world on a level object, of one who stands as by default.
-        turn_deg: how far from that it stands turned, about Z.
-    """
-    if turn_deg:
-        reference = rotation_z(math.radians(turn_deg))[:3, :3] @ reference
-    if who.grasp == "point":
-        return replace(grasp, R_hand_object=reference.T)
-    turn = math.radians(who.grasp_turn_deg)
-    return replace(grasp, moments=True, max_moment=who.max_grasp_moment, max_turn=turn, R_hand_object=reference.T)
-
-
 def _pose(scenario: Scenario, place: GraspPlace | ObjectPlace) -> Array:
-    """Return the pose of the centre of mass: the object's own, or from where the grasp points are.
+    """Return the pose of the centre of mass: the object's own, or from where the grasps are.
 
-    ``height`` is midway between them, ``human_distance`` the lead's. The centre of mass lies half the box's height off
-    that middle, along the body's Z axis; half the depth along its X axis leads there from the lead's grasp point.
+    ``height`` is midway between the lead's hands and the partner's, ``human_distance`` that of the middle of the
+    lead's.
     """
     if isinstance(place, ObjectPlace):
         x, y = (np.nan if value is None else value for value in (place.x, place.y))
         return np.array([x, y, place.z, 0.0, math.radians(place.pitch_deg), 0.0])
-    box, pitch, feet = scenario.object, math.radians(place.pitch_deg), stand_of(scenario, lead(scenario))
-    forward = (box.depth * math.cos(pitch) + box.height * math.sin(pitch)) / 2
-    ahead = np.nan if place.human_distance is None else feet.x + (place.human_distance + forward)
-    return np.array([ahead, np.nan, place.height + box.height / 2 * math.cos(pitch), 0.0, pitch, 0.0])
+    pitch, first = math.radians(place.pitch_deg), lead(scenario)
+    cos, sin = math.cos(pitch), math.sin(pitch)
+    own, middle = middle_of_hands(scenario, first), middle_of_grasps(scenario)
+    forward = -own[0] * cos - own[2] * sin
+    distance = place.human_distance
+    ahead = np.nan if distance is None else stand_of(scenario, first).x + (distance + forward)
+    return np.array([ahead, np.nan, place.height - middle[2] * cos + middle[0] * sin, 0.0, pitch, 0.0])

@@ -6,10 +6,11 @@ from collections import Counter
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import FREE
-from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.scenario.agents import NAME, NAMES
 from liftopt.scenario.fields import ScenarioFields
-from liftopt.scenario.placement import DISTANCE, distance_key, grasp_points, lead, stand_of
+from liftopt.scenario.grasp_checks import check_grasps
+from liftopt.scenario.grasps import middle_of_hands
+from liftopt.scenario.placement import DISTANCE, distance_key, lead, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.scenario.urdf_files import urdf_files
 
@@ -28,7 +29,7 @@ def check(scenario: ScenarioFields) -> None:
     for name in scenario.agents:
         stand_of(scenario, name)
     _check_obstacles(scenario)
-    _check_grasps(scenario)
+    check_grasps(scenario)
     for end in ("start", "end"):
         _check_place(scenario, end)
 
@@ -61,14 +62,6 @@ def _check_obstacles(scenario: ScenarioFields) -> None:
         seen.add(str(obstacle.name))
 
 
-def _check_grasps(scenario: ScenarioFields) -> None:
-    for name in scenario.object.grasps:
-        if name not in scenario.agents:
-            offer = did_you_mean(nearest(name, scenario.agents)) or f"; there are {', '.join(scenario.agents)}"
-            raise InputError(f"object.grasps.{name}", NO_VALUE, f"is the grasp of nobody{offer}")
-    grasp_points(scenario)
-
-
 def _check_weights(scenario: ScenarioFields) -> None:
     weights = {f"{name}.weight": agent.weight for name, agent in scenario.agents.items()}
     objective = scenario.objective
@@ -96,7 +89,7 @@ def _check_distance(scenario: ScenarioFields, key: str, distance: float | None) 
     task, first = scenario.task, lead(scenario)
     if distance is not None and (scenario.agents[first].kind != "person" or stand_of(scenario, first).yaw_deg % 360.0):
         raise InputError(key, distance, f"counts from the feet of a person who faces along X, not {first}; {OWN_PLACE}")
-    room = task.standing_distance - scenario.object.depth
+    room = task.standing_distance - (scenario.object.depth / 2.0 - middle_of_hands(scenario, first)[0])
     if distance_key(scenario) == DISTANCE and (distance or 0.0) >= room:
         where = f"standing_distance {task.standing_distance:g} m, object.depth {scenario.object.depth:g} m"
         raise InputError(

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import about, allowed, sections_in
 from liftopt.scenario.agents import KINDS
 from liftopt.scenario.keys import AGENTS
@@ -48,4 +49,5 @@ def _default(key: str, field: FieldInfo, agents: Mapping[str, str]) -> str:
     first, _, rest = key.partition(".")
     if by_preset := defaults_at(f"{agents.get(first, first)}.{rest}"):
         return "; default " + ", ".join(f"{value} ({preset})" for preset, value in by_preset.items())
-    return "" if field.is_required() or field.default in (None, ()) else f"; default {field.default}"
+    plain = not field.is_required() and field.default_factory is None and field.default not in (None, (), FrozenTable())
+    return f"; default {field.default}" if plain else ""

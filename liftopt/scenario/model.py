@@ -19,6 +19,7 @@ from liftopt.files.section import first_fault, refusal_at
 from liftopt.scenario.checks import check
 from liftopt.scenario.fields import ScenarioFields, safe_name
 from liftopt.scenario.file import read_tables
+from liftopt.scenario.hands import without_hands
 from liftopt.scenario.keys import Changes, changes_in, leaves, path_of, set_entry, value_at
 from liftopt.scenario.listing import describe
 from liftopt.scenario.presets import preset_of, with_defaults, without_preset
@@ -67,7 +68,8 @@ class Scenario(ScenarioFields):
     def replace(self, changes: Mapping[str, Any]) -> Scenario:
         """Return the scenario with some entries changed; this one stays as it is.
 
-        Another ``objective.preset`` brings its own weights and grasps; those among ``changes`` stand.
+        Another ``objective.preset`` brings its own weights and grasps, another ``body`` its hands; those among
+        ``changes`` stand.
 
         Args:
             changes: value by dotted key, ``{"object.mass": 3.0, "human.stature": 1.6}``; an agent is addressed by its
@@ -121,12 +123,11 @@ def scenario_from_dict(tables: Mapping[str, Any]) -> Scenario:
 
 
 def _changed(tables: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
-    """Return the tables of a scenario with some entries changed; another preset drops what the one before says."""
+    """Return the tables of a scenario with some entries changed; what another preset or body says is dropped."""
     wanted = changes_in(changes)
     changed = _with_entries(deepcopy(dict(tables)), wanted)
-    if preset_of(changed) == preset_of(tables):
-        return changed
-    return _with_entries(without_preset(tables), wanted)
+    kept = tables if preset_of(changed) == preset_of(tables) else without_preset(tables)
+    return _with_entries(without_hands(kept, changed), wanted)
 
 
 def _with_entries(tables: dict[str, Any], entries: Iterable[tuple[str, Any]]) -> dict[str, Any]:

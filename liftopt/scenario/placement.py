@@ -1,15 +1,12 @@
-"""Where everybody stands, and where on the object everybody holds it: as given, or the two opposite each other."""
+"""Where everybody stands: as given, or the two opposite each other."""
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.multibody.edges import Point, edge_grasps
 from liftopt.scenario.agents import Person
 from liftopt.scenario.fields import ScenarioFields
-from liftopt.scenario.task import GraspPlace, ObjectPlace
 
 DISTANCE = "task.standing_distance"
 
@@ -61,37 +58,6 @@ def distance_key(scenario: ScenarioFields) -> str | None:
     if isinstance(agent, Person):
         return DISTANCE if agent.position is None else None
     return DISTANCE if agent.base.x is None else f"{name}.base.x"
-
-
-def edge_heights(scenario: ScenarioFields) -> tuple[float, float]:
-    """Return how high the middle of the object's underside is at the start and at the end [m]."""
-    start, end = (_edge_height(scenario, place) for place in (scenario.task.start, scenario.task.end))
-    return start, end
-
-
-def _edge_height(scenario: ScenarioFields, place: GraspPlace | ObjectPlace) -> float:
-    if isinstance(place, GraspPlace):
-        return place.height
-    return place.z - scenario.object.height / 2 * math.cos(math.radians(place.pitch_deg))
-
-
-def grasp_points(scenario: ScenarioFields) -> dict[str, Point]:
-    """Return where each agent holds the object, in the object's axes from its centre [m], in the agents' order.
-
-    Raises:
-        InputError: the scenario does not say it, and the agent is none of the two that stand opposite each other.
-    """
-    box = scenario.object
-    edges = edge_grasps(box.depth, box.height, lead(scenario), partner(scenario) or "")
-    points: dict[str, Point] = {}
-    for name in scenario.agents:
-        point = box.grasps.get(name, edges.get(name))
-        if point is None:
-            raise InputError(
-                f"object.grasps.{name}", NO_VALUE, "is missing; must be [x, y, z] from the object's centre in its axes"
-            )
-        points[name] = point
-    return points
 
 
 def _default(

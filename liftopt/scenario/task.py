@@ -15,14 +15,16 @@ RESTS = Literal["velocity", "acceleration"]
 
 
 class GraspPlace(Section):
-    """Where the object is at one end of the motion, by the edges it is held at.
+    """Where the object is at one end of the motion, by where it is held.
 
-    A tilted object has ``height`` midway between its grasp points; ``human_distance`` is that of the first person's.
-    ``human_distance`` None is "free" in a file.
+    ``height`` is midway between the hands of the first person and the grasp of who stands opposite;
+    ``human_distance`` is that of the middle of the first person's hands, None is "free" in a file.
     """
 
-    height: Annotated[float, number("height of the held edges, midway if tilted (not of the centre)", "m", 0.05, 2.2)]
-    human_distance: Annotated[float | None, free_number("human grasp ahead of the feet", "m", 0.0, 2.0), OrFree]
+    height: Annotated[float, number("height of the grasps, midway if they differ (not of the centre)", "m", 0.05, 2.2)]
+    human_distance: Annotated[
+        float | None, free_number("human grasp, the middle of two hands, ahead of the feet", "m", 0.0, 2.0), OrFree
+    ]
     pitch_deg: Annotated[
         float, number("tilt of the object, above 0 with the robot's edge lower", "deg", -60.0, 60.0)
     ] = 0.0

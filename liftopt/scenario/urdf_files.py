@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from liftopt.scenario.agents import Agent, Person
 from liftopt.scenario.fields import ScenarioFields
-
-# Names that users know: of the agents of the shipped scenarios.
-FAMILIAR = {("human", "person"): "human_arm.urdf", ("robot", "robot"): "sawyer.urdf"}
 
 
 def urdf_files(scenario: ScenarioFields) -> dict[str, str]:
     """Return the file name of every agent's URDF and of the object's, by their names."""
-    agents = {name: FAMILIAR.get((name, agent.kind), f"{name}.urdf") for name, agent in scenario.agents.items()}
+    agents = {name: _file(name, agent) for name, agent in scenario.agents.items()}
     return agents | {scenario.object.name: f"{scenario.object.name}.urdf"}
+
+
+def _file(name: str, agent: Agent) -> str:
+    """Return the file name of an agent's URDF: one that users know, of the paper's human and robot, or its own."""
+    if name == "human" and isinstance(agent, Person) and agent.body == "arm":
+        return "human_arm.urdf"
+    return "sawyer.urdf" if name == "robot" and agent.kind == "robot" else f"{name}.urdf"

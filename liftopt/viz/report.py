@@ -16,7 +16,7 @@ from liftopt.assessment.who import who_is
 from liftopt.ergonomics.rula import ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
-from liftopt.scenario.placement import edge_heights
+from liftopt.scenario.grasps import grasp_heights
 from liftopt.scenario.task import GraspPlace
 from liftopt.solution.checks import TOUCH
 from liftopt.solution.finding import Finding, percent
@@ -83,7 +83,7 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),
         "means": means_words(solution.agents),
-        "heights": edge_heights(solution.scenario),
+        "heights": grasp_heights(solution.scenario),
         "height_of": "the edges they hold" if by_grasps else "its underside",
         "paired": stand_opposite(solution.scenario),
         "about": lambda finding: subject_words(finding, solution.agents),

@@ -144,12 +144,12 @@ def test_inverse_kinematics_turns_the_hand(
 ) -> None:
     """Pinocchio: every posture that is said to hold has both hands within their angle on the object."""
     from liftopt.collocation.spline import Mesh
-    from liftopt.multibody.person.human import HAND_UNDER_EDGE
+    from liftopt.multibody.person.holds import hand_on
     from liftopt.multibody.robots.sawyer import LEVEL_TOOL
     from liftopt.search.inverse_kinematics import InverseKinematics
     from liftopt.search.postures import seed_coordinates
 
-    limit, grips = np.radians(20.0), (HAND_UNDER_EDGE.T, LEVEL_TOOL.T)
+    limit, grips = np.radians(20.0), (hand_on("edge", "right").T, LEVEL_TOOL.T)
     agents = tuple(
         replace(agent, grasps=(Grasp(agent.name, agent.hands[0], True, 5.0, limit, grip),))
         for agent, grip in zip((human, sawyer), grips, strict=True)

@@ -45,6 +45,8 @@ def test_files_that_load_are_valid_as_they_stand_and_with_all_defaults(path: Pat
         ("agents.human.sex", "man"),
         ("agents.human.position", [1.0]),
         ("agents.human.kind", "dog"),
+        ("agents.human.hands", ["middle"]),
+        ("object.grasps", {"human": "top"}),
         ("agents.2nd", {"kind": "robot", "model": "sawyer"}),
         ("object.mas", 2.0),
         ("task.start.human_distance", "far"),

@@ -40,6 +40,8 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
                 "stature": 1.75,
                 "mass": 75.0,
                 "sex": "male",
+                "body": "arm",
+                "hands": ["right"],
                 "max_grasp_moment": 10.0,
                 "contact": "grip",
                 "friction": 0.5,

@@ -101,6 +101,7 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
     assert urdf_files(two_people) == {"anna": "anna.urdf", "ben": "ben.urdf", "box": "box.urdf"}
     assert urdf_files(trio)["human"] == "human_arm.urdf"
     assert urdf_files(load_scenario())["robot"] == "sawyer.urdf"
+    assert urdf_files(load_scenario("table5", ["human.body=whole"]))["human"] == "human.urdf"
 
 
 @pytest.mark.parametrize(
@@ -113,9 +114,9 @@ def test_files_are_named_after_the_agents_and_familiar_ones_as_ever(two_people: 
             "only the two who face each other",
         ),
         (
-            "agents.third={kind='robot', model='sawyer', base={x=0.6, y=1.3, yaw_deg=-90}}",
+            "agents.third={kind='robot', model='sawyer', base={x=1.9, y=1.3, yaw_deg=170}}",
             "object.grasps.third",
-            r"must be \[x, y, z\]",
+            r"by default it is where robot holds; must be \[x, y, z\]",
         ),
         ("agents.table={kind='robot', model='sawyer'}", "agents", "is the name of something else"),
         ("agents.solver={kind='robot', model='sawyer'}", "agents", "is the name of something else"),

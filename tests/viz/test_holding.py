@@ -96,7 +96,7 @@ def test_the_palm_hangs_on_the_models_wrist(lift: Any, playback: Playback) -> No
         pin.forwardKinematics(person.model, data, q)
         grasp = pin.updateFramePlacement(person.model, data, frame)
         palm = _frame(playback, "human_right_palm", k)
-        # The grasp frame has the palm's normal along z and the fingers along -x (human.HAND_UNDER_EDGE).
+        # The grasp frame has the palm's normal along z and the fingers along -x (holds.hand_on).
         wrist = grasp.translation + link_lengths(subject_in(lift, "human")).l6 * grasp.rotation[:, 0]
         np.testing.assert_allclose(palm[:3, 3], wrist, atol=1e-6)
         lean = np.arccos(np.clip(palm[:3, 2] @ grasp.rotation[:, 2], -1.0, 1.0))

@@ -11,8 +11,8 @@ import numpy as np
 from liftopt.lab.robot.action_server import SPEED_RATIO
 from liftopt.lab.robot.dry_run import DryRun
 from liftopt.multibody.robots.sawyer import sawyer_limits
+from liftopt.scenario.grasps import grasp_points
 from liftopt.scenario.model import Scenario
-from liftopt.scenario.placement import grasp_points
 from liftopt.solution.interpolation import linear
 from liftopt.types import Array
 

@@ -35,9 +35,6 @@ __all__ = ["Subject", "human_agent", "human_chain", "human_limits", "human_root"
 
 NAME, ORIGIN = "human", Placement()
 VIRTUAL = ("GT1", "GT2", "GT3")
-# Orientation in the world of the hand that holds an edge from below: palm up (the grasp frame's z), fingers ahead (-x),
-# thumb to the right (y). Within reach at both ends of Table 5 for statures from 1.6 to 1.9 m.
-HAND_UNDER_EDGE = np.diag([-1.0, -1.0, 1.0])
 # Forearm level and half pronated, the hand about 0.43 m ahead at elbow height: the middle of a lift at the waist.
 POSTURE_DEG = {"Q5": 15.0, "Q7": -75.0, "Q8": -80.0}
 

@@ -1,0 +1,51 @@
+"""From a scenario's holds to the grasps that an agent's model has."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from liftopt.multibody.agent import Agent, Grasp
+from liftopt.multibody.dh import rotation_z
+from liftopt.multibody.person.holds import hand_on
+from liftopt.multibody.robots.sawyer import LEVEL_TOOL
+from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.grasps import PlacedGrasp, placed_grasps
+from liftopt.scenario.model import Scenario
+from liftopt.scenario.placement import stand_of
+from liftopt.types import Array
+
+AGAINST_A_SIDE = ("side", "handle")
+
+
+def with_grasps(scenario: Scenario, agent: Agent) -> Agent:
+    """Return an agent whose grasps are named and hold as the scenario says; it has one for each hold already."""
+    holds = [hold for hold in placed_grasps(scenario) if hold.agent == agent.name]
+    grasps = [
+        _grasp(scenario.agents[agent.name], replace(grasp, name=hold.name), _reference(scenario, hold))
+        for grasp, hold in zip(agent.grasps, holds, strict=True)
+    ]
+    return replace(agent, grasps=tuple(grasps))
+
+
+def _grasp(who: Person | Robot, grasp: Grasp, reference: Array) -> Grasp:
+    friction = who.friction if isinstance(who, Person) and who.contact == "flat" else None
+    grasp = replace(grasp, R_hand_object=reference.T, friction=friction)
+    if who.grasp == "point":
+        return grasp
+    return replace(grasp, moments=True, max_moment=who.max_grasp_moment, max_turn=math.radians(who.grasp_turn_deg))
+
+
+def _reference(scenario: Scenario, hold: PlacedGrasp) -> Array:
+    """Return R_world_hand (3, 3) of a hold on a level object.
+
+    It turns with who holds; a palm on a side, and a fist around a handle there, with that side.
+    """
+    yaw = stand_of(scenario, hold.agent).yaw_deg
+    if hold.hand is None:
+        return _turned(LEVEL_TOOL, yaw - 180.0)
+    return _turned(hand_on(hold.hold, hold.hand), 90.0 * hold.quarters if hold.hold in AGAINST_A_SIDE else yaw)
+
+
+def _turned(rotation: Array, about_z_deg: float) -> Array:
+    return rotation_z(math.radians(about_z_deg))[:3, :3] @ rotation if about_z_deg else rotation
