@@ -180,13 +180,6 @@ class Agent:
         return self.is_simple and all(grasp.is_point_contact for grasp in self.grasps)
 
     @property
-    def T_world_base(self) -> Array:
-        """Placement (4, 4) of its base, the frame ``<name>_base`` of its model; the world where there is none."""
-        frame = self.model.getFrameId(f"{self.name}_base")
-        at_world = frame < self.model.nframes and self.model.frames[frame].parentJoint == 0
-        return np.array(self.model.frames[frame].placement.homogeneous) if at_world else np.eye(4)
-
-    @property
     def moving_joints(self) -> tuple[str, ...]:
         """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
