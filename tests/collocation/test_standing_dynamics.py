@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -10,7 +11,11 @@ import pinocchio as pin
 import pytest
 
 from liftopt.collocation.dynamics import KnotFunctions
+from liftopt.collocation.problem import Problem, Team
+from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.standing_dynamics import StandingTopology, standing_agent_functions
+from liftopt.collocation.task import LiftTask
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, LiftedObject
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import Placement
@@ -143,6 +148,30 @@ def test_squares_are_the_gauss_newton_term(built: Built, rng: np.random.Generato
     np.testing.assert_allclose(
         ca.DM(functions.squares(jacobian, d)).full(), whole, rtol=0, atol=1e-12 * np.abs(whole).max()
     )
+
+
+@pytest.mark.parametrize("used", [("hand1",), ("hand1", "hand0")])
+def test_derivatives_of_the_programme(
+    used: tuple[str, ...],
+    make_arm: Callable[..., Agent],
+    make_box: Callable[..., LiftedObject],
+    make_task: Callable[..., LiftTask],
+    check_derivatives: Callable[[Problem], None],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Central differences of objective, rows and Lagrangian with one hand or two of a tree, and another arm."""
+    monkeypatch.setenv("CC", "")
+    monkeypatch.setenv("LIFTOPT_CACHE", "/dev/null/none")
+    model = model_of("tree")
+    n, arm = model.nv, make_arm(2)
+    limits = JointLimits(*(bound * np.ones(n) for bound in (-2.0, 2.5, 3.0, -60.0, 80.0)))
+    grasps = tuple(Grasp(name, name, True, 10.0, 0.5, grip) for name, grip in zip(used, GRIPS, strict=False))
+    tree = replace(
+        arm, name="tree", model=model, grasps=grasps, hands=("hand0", "hand1"), limits=limits, posture=np.zeros(n)
+    )
+    points = np.array([[-0.3, 0.02, -0.05], [0.25, 0.02, -0.05], [0.0, 0.2, 0.1]])[: len(used) + 1]
+    team = Team.of((tree, arm), make_box(points))
+    check_derivatives(Problem(team, make_task(), RestToRestSpline(6).mesh()))
 
 
 def test_one_kernel_serves_everybody_everywhere(rng: np.random.Generator) -> None:
