@@ -14,11 +14,13 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from liftopt.collocation.flat_hand import PUSH, flat_hand_rows
+from liftopt.collocation.flat_hand import flat_hand_rows
 from liftopt.collocation.layout import OBJECT_SIZE, Layout
 from liftopt.collocation.outputs import AgentOutputs, outputs_of
 from liftopt.collocation.pose_kernels import POSE_SIZE
+from liftopt.collocation.push import PUSH
 from liftopt.collocation.separating_planes import SeparatingPlanes
+from liftopt.collocation.soles import resting, sole_rows, weight_of
 from liftopt.collocation.task import OBJECT_COORDINATES, LiftTask
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.types import Array
@@ -33,7 +35,8 @@ class Block:
 
     Attributes:
         name: ``"grasp_closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
-            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
+            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"sole_friction"``, ``"sole_pressure"``,
+            ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
         who: agent, grasp or object; of clearance, the two bodies by number.
         rows: where in g.
         labels: meaning of the rows at one knot; they repeat knot by knot.
@@ -178,6 +181,7 @@ def build_constraints(
             if grasp.moments:
                 _moment(rows, i, own, grasp)
             _flat_hand(rows, i, own, grasp)
+        _soles(rows, i, own, agent)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
     _balance(rows, len(agents), lifted, served_rows(agents, lifted, task.balance_tolerance), task.balance_tolerance)
     _velocity(rows, len(agents), lifted.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
@@ -244,6 +248,20 @@ def _flat_hand(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp) -> None:
         rows.add(rows.outputs_at(i, rows.knots, first + flat.components), flat.signs)
         rows.add(rows.outputs_at(i, rows.knots, np.full(m, first + PUSH)), flat.shares)
         rows.close(flat.name, grasp.name, flat.labels, np.zeros(m), np.full(m, np.inf), len(rows.knots))
+
+
+def _soles(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:
+    """Both feet stay on the floor: rows by the body's weight, a share of it [1] and the centre of pressure then [m]."""
+    if agent.stance is None:
+        return
+    first, weight, feet = own.ground.start, weight_of(agent), resting(agent.stance)
+    for sole in sole_rows(agent.stance):
+        m = len(sole.labels)
+        rows.add(rows.outputs_at(i, rows.knots, first + sole.components), sole.signs / weight)
+        rows.add(rows.outputs_at(i, rows.knots, np.full(m, first + PUSH)), sole.shares / weight)
+        # The kernel has what moves; the feet add to it what never changes.
+        lower = -sole.room(feet)[0] / weight
+        rows.close(sole.name, agent.name, sole.labels, lower, np.full(m, np.inf), len(rows.knots))
 
 
 def served_rows(agents: tuple[Agent, ...], lifted: LiftedObject, tolerance: float) -> list[int]:

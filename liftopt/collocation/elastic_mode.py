@@ -19,6 +19,7 @@ from liftopt.collocation.assembly import Nlp, constant
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.constraints import Block
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.soles import FRICTION, PRESSURE, weight_of
 from liftopt.collocation.solvers.banded_nlp import kernels_for_simd
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
@@ -26,9 +27,9 @@ from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.types import Array
 
-# Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space or too near to another body: a broken
-# limit can be put right by someone stronger or slower, a grasp that does not hold cannot.
-CLOSURE_PRICE, SHARE_PRICE, WORKSPACE_PRICE, CLEARANCE_PRICE = 1000.0, 10.0, 100.0, 100.0
+# Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space, too near to another body or off the
+# soles: a broken limit can be put right by someone stronger or slower, a grasp that does not hold cannot.
+CLOSURE_PRICE, SHARE_PRICE, WORKSPACE_PRICE, CLEARANCE_PRICE, PRESSURE_PRICE = 1000.0, 10.0, 100.0, 100.0, 100.0
 LINEAR = OBJECT_COORDINATES[:3]
 # Weight of the objective beside the prices; its multipliers stay far below them.
 OBJECTIVE = 1e-4
@@ -222,6 +223,11 @@ class SoftProblem(Problem):
         elif block.name in ("friction", "pressure"):
             unit = "N" if block.name == "friction" else "Nm"
             who = [f"{block.who} {label}" for label in block.labels]
+        elif block.name == FRICTION:
+            who, unit = [f"{block.who} {label}" for label in block.labels], "N"
+            amounts = amounts * weight_of(self.team.agents[names.index(block.who)])
+        elif block.name == PRESSURE:
+            who = [f"{block.who} {label}" for label in block.labels]
         elif block.name == "velocity":
             phase = self.mesh.slope_phase
             share, amounts = amounts / block.upper.reshape(amounts.shape), amounts / task.duration
@@ -257,6 +263,8 @@ class SoftProblem(Problem):
             return np.full(len(block.lower), CLOSURE_PRICE)
         if block.name == "workspace":
             return np.full(len(block.lower), WORKSPACE_PRICE)
+        if block.name == PRESSURE:
+            return np.full(len(block.lower), PRESSURE_PRICE)
         if block.name == "clearance":
             return np.full(len(block.lower), CLEARANCE_PRICE)
         if block.name == "velocity":

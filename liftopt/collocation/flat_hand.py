@@ -8,54 +8,25 @@ the moment about z within what friction holds of a pressure that is even over a 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-import numpy.typing as npt
 
+from liftopt.collocation.push import PushRows
 from liftopt.multibody.agent import Grasp
 from liftopt.types import Array
 
-PUSH = 2  # which component of the wrench
 
-
-@dataclass(frozen=True)
-class FlatHandRows:
-    """Rows ``sign * wrench[component] + share * wrench[PUSH] >= 0``.
-
-    Attributes:
-        name: ``"friction"`` [N] or ``"pressure"`` [Nm].
-        labels: (m,) which way the hand would slide or tip.
-        components, signs, shares: (m,) each.
-    """
-
-    name: str
-    labels: tuple[str, ...]
-    components: npt.NDArray[np.int64]
-    signs: Array
-    shares: Array
-
-    def room(self, wrench: Array) -> Array:
-        """Return the rows' values (K, m), negative where they do not hold.
-
-        Args:
-            wrench: (K, 6) force and moment on the object about the grasp point, along the object's axes.
-        """
-        return np.asarray(self.signs * wrench[:, self.components] + self.shares * wrench[:, [PUSH]])
-
-
-def flat_hand_rows(grasp: Grasp) -> tuple[FlatHandRows, ...]:
+def flat_hand_rows(grasp: Grasp) -> tuple[PushRows, ...]:
     """Return the rows of a grasp; none if it grips."""
     if grasp.friction is None:
         return ()
     ways: tuple[str, ...] = ("ahead", "back", "left", "right")
     pyramid = grasp.friction / np.sqrt(2.0)
-    rows = [FlatHandRows("friction", ways, np.array([0, 0, 1, 1]), _pairs(2), np.full(4, pyramid))]
+    rows = [PushRows("friction", ways, np.array([0, 0, 1, 1]), _pairs(2), np.full(4, pyramid))]
     if grasp.moments:
         ways = ("to the left", "to the right", "to the back", "to the front", "turn left", "turn right")
         half = grasp.breadth / 2.0
         shares = half * np.array([1.0, 1.0, 1.0, 1.0, *[2.0 / 3.0 * grasp.friction] * 2])
-        rows.append(FlatHandRows("pressure", ways, np.array([3, 3, 4, 4, 5, 5]), _pairs(3), shares))
+        rows.append(PushRows("pressure", ways, np.array([3, 3, 4, 4, 5, 5]), _pairs(3), shares))
     return tuple(rows)
 
 

@@ -137,7 +137,7 @@ def _loop(ring: Ring, axis: Array, across: Array, sides: int) -> Array:
     angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
     power = 2.0 / ring.squareness
     c, s = (np.sign(f) * np.abs(f) ** power for f in (np.cos(angle), np.sin(angle)))
-    return np.asarray(ring.centre) + ring.across * np.outer(c, first) + ring.along * np.outer(s, second)
+    return np.asarray(ring.centre + ring.across * np.outer(c, first) + ring.along * np.outer(s, second))
 
 
 def _cap(loop: Array, bulge: Array) -> list[Array]:

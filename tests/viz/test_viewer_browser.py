@@ -115,7 +115,7 @@ def test_play_pause_speed_and_scrubbing(opened: Any, lift: Any) -> None:
     assert opened.run("liftopt.state.time") == stopped
     page.select_option("#speed", "0.25")
     assert opened.run("liftopt.state.speed") == 0.25
-    page.fill("#timeline", str(0.5 * end))
+    page.fill("#timeline", f"{0.5 * end:g}")
     assert opened.run("liftopt.state.time") == pytest.approx(0.5 * end)
     assert page.inner_text("#clock") == f"{0.5 * end:.2f} s of {end:.2f} s"
     page.select_option("#speed", "1")
