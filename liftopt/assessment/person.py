@@ -30,7 +30,7 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
     for measure in ergonomics.measures:
         yield posture_finding(who, ergonomics, measure) if measure.code in PARTS else _guide(who, measure)
     yield from style_findings(who, ergonomics, float(person.p_world_hold[0, 2]))
-    if len(fine.agents) > 1:
+    if fine.object.grasp_position.shape[1] > 1:
         yield squeeze_finding(fine, person)
     yield share_finding(fine, person, who)
     yield from cap_findings(fine, person, who)

@@ -195,6 +195,11 @@ def bearing(model: pin.Model, carrier: int) -> Array:
     return on
 
 
+def mirrored(matrices: Array) -> Array:
+    """Return symmetric matrices (K, n, n) from their upper triangles, all that Pinocchio fills of a mass matrix."""
+    return np.triu(matrices) + np.triu(matrices, 1).swapaxes(1, 2)
+
+
 def object_trajectory(
     lifted: LiftedObject, x: Array, xdot: Array, xddot: Array, forces: Array, moments: Array | None = None
 ) -> ObjectTrajectory:
