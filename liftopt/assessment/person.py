@@ -7,14 +7,16 @@ from collections.abc import Iterator
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
 from liftopt.assessment.posture import PARTS, posture_finding, style_findings
+from liftopt.assessment.standing import standing_findings
 from liftopt.assessment.who import Who
 from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measure import Measure
 from liftopt.ergonomics.measures import ergonomics_of
-from liftopt.multibody.joint_meanings import HUMAN_JOINTS
-from liftopt.multibody.person.provenance import subject_quantities
+from liftopt.multibody.joint_meanings import joint_meanings
+from liftopt.multibody.person.provenance import subject_quantities, whole_quantities
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
 from liftopt.multibody.person.strength import STRENGTHS
+from liftopt.multibody.person.whole_joints import WHOLE_RANGES, WHOLE_STRENGTHS
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
@@ -28,8 +30,9 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
     yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:
         yield posture_finding(who, ergonomics, measure) if measure.code in PARTS else _guide(who, measure)
+    yield from standing_findings(fine, person, who)
     yield from style_findings(who, ergonomics, float(person.p_world_hold[0, 2]))
-    if len(fine.agents) > 1:
+    if fine.object.grasp_position.shape[1] > 1:
         yield squeeze_finding(fine, person)
     yield share_finding(fine, person, who)
     yield from cap_findings(fine, person, who)
@@ -37,11 +40,19 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
 
 
 def _words(who: Who) -> Words:
-    motions = {(item.joint, item.sign): item.motion for item in STRENGTHS}
-    strength = {(item.joint, item.sign): item.source.told for item in STRENGTHS}
-    ranges = {(item.joint, -1): item.lower_source.told for item in RANGES}
-    ranges |= {(item.joint, 1): item.upper_source.told for item in RANGES}
-    return Words(who, "strength", "strength", VELOCITY_SOURCE.told, motions, HUMAN_JOINTS, strength, ranges)
+    strengths, every_range = (*STRENGTHS, *WHOLE_STRENGTHS), (*RANGES, *WHOLE_RANGES)
+    motions = {(item.joint, item.sign): f"{_side(item.joint)}{item.motion}" for item in strengths}
+    strength = {(item.joint, item.sign): item.source.told for item in strengths}
+    ranges = {(item.joint, -1): item.lower_source.told for item in every_range}
+    ranges |= {(item.joint, 1): item.upper_source.told for item in every_range}
+    meanings = joint_meanings("person")
+    return Words(who, "strength", "strength", VELOCITY_SOURCE.told, motions, meanings, strength, ranges)
+
+
+def _side(joint: str) -> str:
+    """Return ``"left "`` of ``"left_Q4"``, nothing of a joint that has no side."""
+    side, separator, _ = joint.partition("_")
+    return f"{side} " if separator else ""
 
 
 def _guide(who: Who, measure: Measure) -> Finding:
@@ -69,7 +80,8 @@ def _for(who: Who) -> str:
 
 
 def _data(fine: Solution, who: Who) -> Finding:
-    strengths = [item for item in subject_quantities(subject_in(fine, who.name)) if item.group == "strength"]
+    stated = subject_quantities if fine[who.name].stance is None else whole_quantities
+    strengths = [item for item in stated(subject_in(fine, who.name)) if item.group == "strength"]
     weak = [item for item in strengths if item.source.confidence in UNSURE]
     part = f"{len(weak)} of {len(strengths)} strength limits"
     return Finding(

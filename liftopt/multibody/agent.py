@@ -136,6 +136,12 @@ class Stance:
     mass: float
     p_base_com: Array
 
+    @property
+    def support(self) -> tuple[float, float, float]:
+        """Rectangle around both soles: where it begins and ends along X, and how far it reaches along Y [m]."""
+        back, ahead, aside = zip(*self.soles, strict=True)
+        return min(back), max(ahead), max(aside)
+
 
 @dataclass(frozen=True)
 class Agent:
@@ -183,6 +189,12 @@ class Agent:
     def moving_joints(self) -> tuple[str, ...]:
         """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
+
+    @property
+    def T_world_base(self) -> Array:
+        """(4, 4) placement of the link that carries its first joint: of one who stands, the feet's origin and axes."""
+        first = self.model.frames[self.model.getFrameId(self.model.names[1])]
+        return np.asarray(self.model.frames[first.parentFrame].placement.homogeneous)
 
     def reduced(self) -> pin.Model:
         """Return the model without the locked joints, which stay at zero."""
