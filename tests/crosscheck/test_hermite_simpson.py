@@ -40,7 +40,7 @@ def solution(solved: Callable[..., Any]) -> Any:
 
 @pytest.fixture(scope="module")
 def natural(solved: Callable[..., Any]) -> Any:
-    return solved("table5_paper", *CHEAP, "objective.preset=natural").solution
+    return solved("table5_paper", *CHEAP, "objective.preset=natural", "objective.spine_weight=300").solution
 
 
 @pytest.fixture(scope="module")
