@@ -130,7 +130,7 @@ def _bare_ground(agent: Agent, model: pin.Model, q: Array, v: Array, a: Array, p
     It is what the root of the same tree on a free-flyer at the base would have to transmit: RNEA gives it in the axes
     of the base, about its origin.
     """
-    n, base = model.nv, pin.SE3(agent.T_world_base)
+    n, base = model.nv, pin.SE3(_base(agent))
     floating = pin.Model()
     floating.gravity = model.gravity
     root = floating.addJoint(0, pin.JointModelFreeFlyer(), base, "floating_base")
@@ -149,13 +149,18 @@ def _bare_ground(agent: Agent, model: pin.Model, q: Array, v: Array, a: Array, p
     return ground, slopes
 
 
+def _base(agent: Agent) -> Array:
+    """Return the placement (4, 4) in whose axes the ground's outputs are: the world's of one that does not stand."""
+    return agent.T_world_base if agent.stance else np.eye(4)
+
+
 def _add_to_ground(
     agent: Agent, own: AgentOutputs, outputs: Array, jacobian: Array, point: Array, reach: Array, y: Array,
     force: slice, moment: slice,
 ) -> None:  # fmt: skip
     """Add what holds a hand's reaction to the ground's force and moment."""
     n, f, m, first = own.joints, y[:, force], y[:, moment], own.ground.start
-    to_base, lever = agent.T_world_base[:3, :3].T, point - agent.T_world_base[:3, 3]
+    to_base, lever = _base(agent)[:3, :3].T, point - _base(agent)[:3, 3]
     pull, twist = slice(first, first + 3), slice(first + 3, first + 6)
     outputs[:, pull] += f @ to_base.T
     outputs[:, twist] += (cross(lever, f) + m) @ to_base.T
