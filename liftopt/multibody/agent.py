@@ -184,6 +184,12 @@ class Agent:
         """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
 
+    @property
+    def T_world_base(self) -> Array:
+        """(4, 4) placement of the link that carries its first joint: of one who stands, the feet's origin and axes."""
+        first = self.model.frames[self.model.getFrameId(self.model.names[1])]
+        return np.asarray(self.model.frames[first.parentFrame].placement.homogeneous)
+
     def reduced(self) -> pin.Model:
         """Return the model without the locked joints, which stay at zero."""
         ids = [self.model.getJointId(name) for name in self.locked_joints]
