@@ -55,6 +55,13 @@ def _module(name: str) -> Any:
 
 
 @pytest.fixture(scope="session")
+def make_two_handed() -> Callable[..., Agent]:
+    """Return a function that makes a small agent with two arms."""
+    found: Callable[..., Agent] = _module("two_hands").two_handed
+    return found
+
+
+@pytest.fixture(scope="session")
 def scenario_tables() -> Any:
     """Return a hypothesis strategy: tables of a scenario whose entries are allowed, each for itself."""
     return _module("scenario_tables").tables()

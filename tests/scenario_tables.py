@@ -15,7 +15,7 @@ from liftopt.scenario.model import Scenario
 from liftopt.scenario.obstacles import Obstacle
 
 TEAM = {"human": "person", "robot": "robot"}
-LEFT_OUT = ("agents", "grasps", "kind", "body", "hands")  # not each for itself
+LEFT_OUT = ("agents", "grasps", "kind")
 
 
 def tables() -> st.SearchStrategy[dict[str, Any]]:
@@ -34,7 +34,7 @@ def section(of: type[BaseModel]) -> st.SearchStrategy[dict[str, Any]]:
 
 
 def _may_be_left_out(field: FieldInfo) -> bool:
-    return not field.is_required() and field.default is None
+    return not field.is_required() and (field.default is None or field.default_factory is not None)
 
 
 def _entry(name: str, field: FieldInfo) -> st.SearchStrategy[Any]:
@@ -54,6 +54,8 @@ def _entry(name: str, field: FieldInfo) -> st.SearchStrategy[Any]:
         return st.integers(int(low), int(high))
     if kinds == (bool,):
         return st.booleans()
+    if name == "hands":
+        return st.sampled_from((["right"], ["left"], ["right", "left"]))
     if name == "name":
         return st.from_regex(r"[A-Za-z][A-Za-z0-9_]{0,30}", fullmatch=True)
     return st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=2)  # a position

@@ -43,7 +43,7 @@ def cap_findings(fine: Solution, agent: AgentTrajectory, who: Who) -> Iterator[F
 
 
 def squeeze_finding(fine: Solution, person: AgentTrajectory) -> Finding:
-    """Return how hard a person's hand and the others work against each other.
+    """Return how hard a person's hands and all others work against each other.
 
     More than the object weighs is a warning.
     """
@@ -65,12 +65,15 @@ def squeeze_finding(fine: Solution, person: AgentTrajectory) -> Finding:
 
 
 def _pair(fine: Solution, person: AgentTrajectory) -> str:
-    """Return a person's hand and those that it works against, as the first words of a sentence."""
+    """Return a person's hands and those that they work against, as the first words of a sentence."""
+    hands = "hands" if len(person.grasps) > 1 else "hand"
     if len(fine.persons) == len(fine.robots) == 1:
-        return "Hand and gripper"
+        return f"{hands.capitalize()} and gripper"
     called = {agent.name: who_is(agent, fine.agents).called for agent in fine.agents}
     own = called.pop(person.name)
-    return f"The hand of {own} and {'that' if len(called) == 1 else 'those'} of {listed(called.values())}"
+    if not called:
+        return f"The hands of {own}"
+    return f"The {hands} of {own} and {'that' if len(called) == 1 else 'those'} of {listed(called.values())}"
 
 
 def share_finding(fine: Solution, person: AgentTrajectory, who: Who) -> Finding:

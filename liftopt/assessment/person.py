@@ -6,19 +6,21 @@ from collections.abc import Iterator
 
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
+from liftopt.assessment.posture import PARTS, posture_finding, style_findings
+from liftopt.assessment.standing import standing_findings
 from liftopt.assessment.who import Who
 from liftopt.ergonomics.lift import subject_in
-from liftopt.ergonomics.measures import Ergonomics, Measure, ergonomics_of
-from liftopt.ergonomics.rula import ACTION
-from liftopt.multibody.joint_meanings import HUMAN_JOINTS
-from liftopt.multibody.person.provenance import subject_quantities
+from liftopt.ergonomics.measure import Measure
+from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.multibody.joint_meanings import joint_meanings
+from liftopt.multibody.person.provenance import subject_quantities, whole_quantities
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
 from liftopt.multibody.person.strength import STRENGTHS
+from liftopt.multibody.person.whole_joints import WHOLE_RANGES, WHOLE_STRENGTHS
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
 
-CHANGE, INVESTIGATE = 5, 3  # grand scores from which RULA asks for a change, and for a closer look
 UNSURE = ("unverified", "estimate")
 
 
@@ -27,8 +29,10 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
     ergonomics = ergonomics_of(fine, person)
     yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:
-        yield _posture(who, ergonomics, measure) if measure.code == "posture" else _guide(who, measure)
-    if len(fine.agents) > 1:
+        yield posture_finding(who, ergonomics, measure) if measure.code in PARTS else _guide(who, measure)
+    yield from standing_findings(fine, person, who)
+    yield from style_findings(who, ergonomics, float(person.p_world_hold[0, 2]))
+    if fine.object.grasp_position.shape[1] > 1:
         yield squeeze_finding(fine, person)
     yield share_finding(fine, person, who)
     yield from cap_findings(fine, person, who)
@@ -36,29 +40,19 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
 
 
 def _words(who: Who) -> Words:
-    motions = {(item.joint, item.sign): item.motion for item in STRENGTHS}
-    strength = {(item.joint, item.sign): item.source.told for item in STRENGTHS}
-    ranges = {(item.joint, -1): item.lower_source.told for item in RANGES}
-    ranges |= {(item.joint, 1): item.upper_source.told for item in RANGES}
-    return Words(who, "strength", "strength", VELOCITY_SOURCE.told, motions, HUMAN_JOINTS, strength, ranges)
+    strengths, every_range = (*STRENGTHS, *WHOLE_STRENGTHS), (*RANGES, *WHOLE_RANGES)
+    motions = {(item.joint, item.sign): f"{_side(item.joint)}{item.motion}" for item in strengths}
+    strength = {(item.joint, item.sign): item.source.told for item in strengths}
+    ranges = {(item.joint, -1): item.lower_source.told for item in every_range}
+    ranges |= {(item.joint, 1): item.upper_source.told for item in every_range}
+    meanings = joint_meanings("person")
+    return Words(who, "strength", "strength", VELOCITY_SOURCE.told, motions, meanings, strength, ranges)
 
 
-def _posture(who: Who, ergonomics: Ergonomics, measure: Measure) -> Finding:
-    scores = ergonomics.rula
-    worst, parts = int(scores.grand.max()), scores.at(scores.worst)
-    words = ", ".join(
-        f"{name.replace('_', ' ')} {parts[name]}" for name in ("upper_arm", "lower_arm", "wrist", "trunk")
-    )
-    text = f"The posture{who.of} scores RULA {worst} of 7 at {measure.time:.2f} s ({words}): {ACTION[worst]}"
-    if worst >= CHANGE:
-        text += f"; {CHANGE} or more for {100 * float((scores.grand >= CHANGE).mean()):.0f} % of the lift"
-    return Finding(
-        f"{PERSON}.posture",
-        WARNING if worst >= CHANGE else CAUTION if worst >= INVESTIGATE else INFO,
-        f"posture RULA {worst} of 7, {ACTION[worst]}",
-        f"{text}.",
-        who.name, None, measure.time, measure.value, None, measure.unit, measure.source.told,
-    )  # fmt: skip
+def _side(joint: str) -> str:
+    """Return ``"left "`` of ``"left_Q4"``, nothing of a joint that has no side."""
+    side, separator, _ = joint.partition("_")
+    return f"{side} " if separator else ""
 
 
 def _guide(who: Who, measure: Measure) -> Finding:
@@ -69,7 +63,9 @@ def _guide(who: Who, measure: Measure) -> Finding:
     elif measure.value is not None and measure.limit is not None:
         used = max(0.0, measure.value / measure.limit)  # a hand that only pulls down lifts nothing
         severity = WARNING if used > 1.0 else CAUTION if used >= NEAR_LIMIT else INFO
-        title = f"{percent(used)} % of the {name} ({measure.value:.1f} of {measure.limit:.1f} kg)"
+        digits = 1 if measure.unit == "kg" else 0
+        numbers = f"{measure.value:.{digits}f} of {measure.limit:.{digits}f} {measure.unit}"
+        title = f"{percent(used)} % of the {name} ({numbers})"
     return Finding(
         f"{PERSON}.{measure.code}",
         severity,
@@ -84,7 +80,8 @@ def _for(who: Who) -> str:
 
 
 def _data(fine: Solution, who: Who) -> Finding:
-    strengths = [item for item in subject_quantities(subject_in(fine, who.name)) if item.group == "strength"]
+    stated = subject_quantities if fine[who.name].stance is None else whole_quantities
+    strengths = [item for item in stated(subject_in(fine, who.name)) if item.group == "strength"]
     weak = [item for item in strengths if item.source.confidence in UNSURE]
     part = f"{len(weak)} of {len(strengths)} strength limits"
     return Finding(

@@ -23,7 +23,7 @@ MARKS = {WARNING: "! ", CAUTION: "- ", INFO: ""}
 WORDS = {WARNING: "WARNING", CAUTION: "caution", INFO: "within limits"}
 # Told in any case.
 ALWAYS = {
-    PERSON: ("strength", "posture", "acgih", "grasp_force", "load_share"),
+    PERSON: ("strength", "posture", "spine_compression", "lifting_style", "acgih", "grasp_force", "load_share"),
     ROBOT: ("torque", "payload"),
     MATHEMATICS: ("mesh", "objective_error"),
     CLEARANCE: ("person_robot",),

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+from liftopt.multibody.agent import Agent
 from liftopt.scenario.agents import Person, Robot
 from liftopt.scenario.meant import KINDS
 from liftopt.solution.finding import PERSON, ROBOT
@@ -91,6 +92,13 @@ def hand_of(grasp: str, who: Who) -> str:
 def whose(name: str) -> str:
     """Return ``"anna's"``; ``"the robot's"`` where the name is a word for what the agent is."""
     return f"the {name}'s" if name in KINDS else f"{name}'s"
+
+
+def whose_hold(grasp: str, agents: Iterable[Agent]) -> str:
+    """Return whose grasp one is by its name, ``"the human's"``; ``"the human's right"`` of one who has several."""
+    holder = next(agent for agent in agents if grasp in [each.name for each in agent.grasps])
+    side = grasp.removeprefix(holder.name).removeprefix("_")
+    return f"{whose(holder.name)} {side}".rstrip()
 
 
 def listed(names: Iterable[str]) -> str:

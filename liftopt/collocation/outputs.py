@@ -33,6 +33,11 @@ class AgentOutputs:
     stands: bool
 
     @property
+    def has_moments(self) -> bool:
+        """Whether hands have more than the outputs of a force at a point."""
+        return self.of_a_hand == WITH_MOMENT
+
+    @property
     def tau(self) -> slice:
         """Joint torques [Nm]."""
         return slice(0, self.joints)

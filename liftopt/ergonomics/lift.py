@@ -39,8 +39,12 @@ class Lift(Protocol):
         """What is lifted."""
 
     @property
+    def agents(self) -> tuple[AgentTrajectory, ...]:
+        """All who lift."""
+
+    @property
     def robots(self) -> tuple[AgentTrajectory, ...]:
-        """Those that help."""
+        """Those of them that are robots."""
 
 
 def model_of(lift: Lift, name: str) -> Agent:

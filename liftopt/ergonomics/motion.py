@@ -9,6 +9,7 @@ import pinocchio as pin
 from scipy.signal import find_peaks
 
 from liftopt.ergonomics.lift import Lift, model_of
+from liftopt.ergonomics.limbs import Arm, holding_arms
 from liftopt.ergonomics.posture import WRIST, posture_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
@@ -18,7 +19,7 @@ PROMINENT = 0.1  # share of the highest speed by which a peak stands out from th
 
 @dataclass(frozen=True)
 class Motion:
-    """Trunk, right arm and hand at K times; angles in deg, arrays (K,).
+    """Trunk, one arm and its hand at K times; angles in deg, arrays (K,), alike on both sides.
 
     Attributes:
         elbow: flexion; 0 is a straight arm.
@@ -47,32 +48,36 @@ class Motion:
 
 
 def motion_of(lift: Lift, person: AgentTrajectory) -> Motion:
-    """Return how a person moves at every time of a lift; a finer grid sees what is between the knots."""
-    posture = posture_of(lift, person)
-    flexion, out = np.radians(posture.upper_arm_flexion), np.radians(posture.upper_arm_out)
+    """Return how a person moves at every time of a lift; a finer grid sees what is between the knots.
+
+    Of two arms that hold, the right one is measured; the path is that of the middle between the hands.
+    """
+    arm, posture = holding_arms(person)[0], posture_of(lift, person)
+    limb = posture.arm(arm.side)
+    flexion, out = np.radians(limb.upper_arm_flexion), np.radians(limb.upper_arm_out)
     forward, sideways, down = np.sin(flexion) * np.cos(out), np.sin(out), np.cos(flexion) * np.cos(out)
     elevation = np.arccos(np.clip(down, -1.0, 1.0))
     level = np.hypot(forward, sideways)
-    bend = np.cos(np.radians(posture.wrist_flexion)) * np.cos(np.radians(posture.wrist_deviation))
+    bend = np.cos(np.radians(limb.wrist_flexion)) * np.cos(np.radians(limb.wrist_deviation))
     path = person.p_world_hold
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     return Motion(
-        elbow=posture.elbow_flexion,
+        elbow=limb.elbow_flexion,
         humeral_elevation=np.degrees(elevation),
         abduction=np.degrees(elevation * np.divide(sideways, level, out=np.zeros_like(level), where=level > 0.0)),
-        wrist_flexion=posture.wrist_flexion,
-        wrist_deviation=posture.wrist_deviation,
+        wrist_flexion=limb.wrist_flexion,
+        wrist_deviation=limb.wrist_deviation,
         wrist_bend=np.degrees(np.arccos(np.clip(bend, -1.0, 1.0))),
         twist=posture.trunk_turn,
-        wrist_height=_wrist_height(lift, person),
+        wrist_height=_wrist_height(lift, person, arm),
         path_over_chord=length / float(np.linalg.norm(path[-1] - path[0])),
         speed_peaks=_peaks(np.linalg.norm(np.gradient(path, lift.time, axis=0), axis=1)),
     )
 
 
-def _wrist_height(lift: Lift, person: AgentTrajectory) -> Array:
+def _wrist_height(lift: Lift, person: AgentTrajectory, arm: Arm) -> Array:
     agent = model_of(lift, person.name)
-    data, frame = agent.model.createData(), agent.model.getFrameId(f"{person.name}_{WRIST}_link")
+    data, frame = agent.model.createData(), agent.model.getFrameId(f"{arm.prefix}{WRIST}_link")
     height = np.zeros(len(person.q))
     for k, q in enumerate(person.q):
         pin.framesForwardKinematics(agent.model, data, q)

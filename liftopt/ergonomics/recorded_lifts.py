@@ -1,4 +1,4 @@
-"""How one person lifted: joint angles by the height of the wrist, as means and standard deviations over five lifts.
+"""How people lifted: one by the height of the wrist, as means and deviations over five lifts, and seven from the floor.
 
 One person, two hands on a box, an inertial suit; five lifts from 0.5 m to 1.1, 1.2, 1.2, 1.4 and 1.7 m. It is a trend
 and no norm: one person, one box, few lifts, the fewer the higher. Published or larger data take precedence.
@@ -12,6 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from liftopt.ergonomics.posture import Posture
 from liftopt.multibody.sources import Source
 from liftopt.types import Array
 
@@ -77,3 +78,30 @@ RECORDED: Mapping[str, RecordedAngle] = MappingProxyType(
         ),
     }
 )
+
+# Seven men who squatted to lift from the floor with both hands, as means of the published curves [deg].
+SQUAT_SOURCE = Source("recorded means of seven men in squat lifts from the floor, as handed down", "unverified")
+KNEE_START, KNEE_END = 120.0, 25.0
+TRUNK_BAND, ELBOW_BAND = (20.0, 45.0), (30.0, 65.0)  # that trunk inclination and elbow flexion stayed in
+
+
+def off_recorded_squat(posture: Posture) -> dict[str, float]:
+    """Return how far a lift is off that of the seven men, by angle; more bent is positive [deg].
+
+    Knees are compared at the start and at the end, trunk and elbows by how far they leave the band at most.
+    """
+    elbow = np.stack([arm.elbow_flexion for arm in posture.arms])
+    return {
+        "knees at the start": float(posture.knee[0]) - KNEE_START,
+        "knees at the end": float(posture.knee[-1]) - KNEE_END,
+        "trunk": _outside(posture.trunk_inclination, TRUNK_BAND),
+        "elbows": _outside(elbow, ELBOW_BAND),
+    }
+
+
+def _outside(values: Array, band: tuple[float, float]) -> float:
+    """Return by how much values leave a band at most: above it positive, below it negative."""
+    above, below = float(values.max()) - band[1], band[0] - float(values.min())
+    if max(above, below) <= 0.0:
+        return 0.0
+    return above if above >= below else -below

@@ -6,21 +6,19 @@ model does not have, is decided here and listed in ``ASSUMPTIONS``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from liftopt.ergonomics.posture import Posture
+from liftopt.ergonomics.posture import ArmPosture, Posture
 from liftopt.ergonomics.rula_tables import TABLE_A, TABLE_B, TABLE_C
-from liftopt.types import Array
-
-Scores = npt.NDArray[np.int64]
+from liftopt.ergonomics.scores import PostureScores, Scores, bands
 
 NEUTRAL = 5.0  # deg; less is taken for "neutral", "erect", "not bent from the midline"
 TURNED = 10.0  # deg; a trunk turned or bent sideways by more counts as such
 ABDUCTED = 20.0  # deg out of the sagittal plane
 TWISTED = 45.0  # deg from the middle of forearm rotation; more is "near the end of the range"
+UNEVEN = 2.0 / 3.0  # share of the weight on one foot; more is not "evenly balanced"
 OUT_TO_THE_SIDE = 0.05  # m from the shoulder joint to the side of the body
 
 ASSUMPTIONS = (
@@ -33,11 +31,12 @@ ASSUMPTIONS = (
     f"{100 * OUT_TO_THE_SIDE:g} cm outside the shoulder joint.",
     f"The forearm is near the end of its range beyond {TWISTED:g}° from the middle of pronation and supination.",
     "The model has no neck: the head is scored as neutral (1), though a person watching the object bends it. Legs: "
-    "standing evenly on both feet (1).",
+    f"standing evenly on both feet (1), or one foot bears more than {100 * UNEVEN:.0f} % of the weight (2). How far "
+    "the trunk is bent counts against the vertical, whatever bends it.",
     "Force: magnitude of the hand force as a mass, intermittent: 0 below 2 kg, 1 up to 10 kg, 2 above. Muscle use: one "
     "lift, neither held over a minute nor repeated over four times a minute (0); a repeated lift adds 1 to both parts, "
     "and 1 more for a force of 2 kg or more.",
-    "Only the right arm, which lifts, is scored.",
+    "Every arm that the model moves is scored with the load of its own hand; the worse side counts.",
 )
 ACTION = {
     1: "acceptable if not maintained or repeated for long",
@@ -51,15 +50,14 @@ ACTION = {
 
 
 @dataclass(frozen=True)
-class Rula:
+class Rula(PostureScores):
     """Scores (K,) of every step of RULA; ``grand`` runs from 1 (acceptable) to 7 (change immediately).
 
     Attributes:
-        upper_arm, lower_arm, wrist, wrist_twist: of the right arm.
+        upper_arm, lower_arm, wrist, wrist_twist: of the arm.
         neck, trunk, legs: of the body.
         force: of the hand force.
         arm_with_force, body_with_force: scores C and D, the rows and columns of the last table.
-        grand: the result.
     """
 
     upper_arm: Scores
@@ -72,47 +70,37 @@ class Rula:
     force: Scores
     arm_with_force: Scores
     body_with_force: Scores
-    grand: Scores
-
-    def at(self, k: int) -> dict[str, int]:
-        """Return all scores of time ``k`` by name."""
-        return {field.name: int(getattr(self, field.name)[k]) for field in fields(self)}
-
-    @property
-    def worst(self) -> int:
-        """The index of the first time with the highest grand score."""
-        return int(np.argmax(self.grand))
 
 
-def rula(posture: Posture) -> Rula:
-    """Return the scores of ``posture`` at every time."""
-    one = np.ones(len(posture.hand_load), dtype=np.int64)
-    upper_arm = _upper_arm(posture)
-    lower_arm = _lower_arm(posture)
-    wrist = _bands(np.abs(posture.wrist_flexion), (NEUTRAL, 15.0)) + (np.abs(posture.wrist_deviation) > NEUTRAL)
-    twist = _bands(np.abs(posture.pronation), (TWISTED,))
-    trunk = _bands(np.abs(posture.trunk_flexion), (NEUTRAL, 20.0, 60.0))
+def rula(posture: Posture) -> tuple[Rula, ...]:
+    """Return the scores of ``posture`` at every time, one for each of its arms."""
+    return tuple(_side(posture, arm) for arm in posture.arms)
+
+
+def _side(posture: Posture, arm: ArmPosture) -> Rula:
+    one = np.ones(len(arm.hand_load), dtype=np.int64)
+    upper_arm = _upper_arm(arm)
+    lower_arm = _lower_arm(arm)
+    wrist = bands(np.abs(arm.wrist_flexion), (NEUTRAL, 15.0)) + (np.abs(arm.wrist_deviation) > NEUTRAL)
+    twist = bands(np.abs(arm.pronation), (TWISTED,))
+    trunk = bands(np.abs(posture.trunk_inclination), (NEUTRAL, 20.0, 60.0))
     trunk = trunk + (np.abs(posture.trunk_turn) > TURNED) + (np.abs(posture.trunk_bend) > TURNED)
-    load = posture.hand_load
+    load = arm.hand_load
     force = np.where(load < 2.0, 0, np.where(load <= 10.0, 1, 2))
-    arm = TABLE_A[upper_arm - 1, lower_arm - 1, wrist - 1, twist - 1] + force
-    body = TABLE_B[one - 1, trunk - 1, one - 1] + force
-    grand = TABLE_C[np.minimum(arm, 8) - 1, np.minimum(body, 7) - 1]
-    return Rula(upper_arm, lower_arm, wrist, twist, one, trunk, one, force, arm, body, grand)
+    legs = np.where(posture.heavier_foot > UNEVEN, 2, 1)
+    of_arm = TABLE_A[upper_arm - 1, lower_arm - 1, wrist - 1, twist - 1] + force
+    of_body = TABLE_B[one - 1, trunk - 1, legs - 1] + force
+    grand = TABLE_C[np.minimum(of_arm, 8) - 1, np.minimum(of_body, 7) - 1]
+    return Rula(arm.side, grand, upper_arm, lower_arm, wrist, twist, one, trunk, legs, force, of_arm, of_body)
 
 
-def _upper_arm(posture: Posture) -> Scores:
-    flexion = posture.upper_arm_flexion
-    score = np.where(flexion < -20.0, 2, _bands(flexion, (20.0, 45.0, 90.0)))
-    return score + (posture.upper_arm_out > ABDUCTED)
+def _upper_arm(arm: ArmPosture) -> Scores:
+    flexion = arm.upper_arm_flexion
+    score = np.where(flexion < -20.0, 2, bands(flexion, (20.0, 45.0, 90.0)))
+    return score + (arm.upper_arm_out > ABDUCTED)
 
 
-def _lower_arm(posture: Posture) -> Scores:
-    flexion = posture.elbow_flexion
-    aside = (posture.wrist_left > 0.0) | (posture.wrist_outside > OUT_TO_THE_SIDE)
+def _lower_arm(arm: ArmPosture) -> Scores:
+    flexion = arm.elbow_flexion
+    aside = (arm.wrist_across > 0.0) | (arm.wrist_outside > OUT_TO_THE_SIDE)
     return np.where((flexion >= 60.0) & (flexion <= 100.0), 1, 2) + aside
-
-
-def _bands(values: Array, ends: tuple[float, ...]) -> Scores:
-    """Return 1 up to the first of ``ends``, 2 up to the second, and so on."""
-    return 1 + np.searchsorted(np.array(ends), values, side="left")

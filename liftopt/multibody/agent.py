@@ -136,6 +136,12 @@ class Stance:
     mass: float
     p_base_com: Array
 
+    @property
+    def support(self) -> tuple[float, float, float]:
+        """Rectangle around both soles: where it begins and ends along X, and how far it reaches along Y [m]."""
+        back, ahead, aside = zip(*self.soles, strict=True)
+        return min(back), max(ahead), max(aside)
+
 
 @dataclass(frozen=True)
 class Agent:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from liftopt.multibody.agent import Kind
 
+ARM_JOINTS = tuple(f"Q{k}" for k in range(4, 11))
 # The motion named is the positive direction of the joint, except where (-) says otherwise; right arm.
 HUMAN_JOINTS = {
     "Q1": "trunk bend right",
@@ -18,6 +19,13 @@ HUMAN_JOINTS = {
     "Q8": "forearm supination",
     "Q9": "wrist extension",
     "Q10": "wrist ulnar deviation",
+}
+# Of the whole person; both arms have the right one's motions and signs.
+WHOLE_JOINTS = {
+    "ankle": "ankle dorsiflexion",
+    "knee": "knee flexion",
+    "hip": "hip flexion",
+    **{f"{side}_{joint}": f"{side} {HUMAN_JOINTS[joint]}" for side in ("right", "left") for joint in ARM_JOINTS},
 }
 # The manufacturer's joint names; the sign is that of its angle where Table 3's is Q.
 SAWYER_JOINTS = {
@@ -39,5 +47,5 @@ def joint_meanings(kind: Kind, model: str = "") -> Mapping[str, str]:
         model: of a robot, as the scenario names it.
     """
     if kind == "person":
-        return HUMAN_JOINTS
+        return HUMAN_JOINTS | WHOLE_JOINTS
     return SAWYER_JOINTS if model == "sawyer" else {}

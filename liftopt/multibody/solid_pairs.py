@@ -1,10 +1,10 @@
 """Which solids must keep apart, and which are exempt, by rule.
 
 - What an agent grasps with (the solids on the joint that carries its grasp frame) is exempt against the object.
-- The floor is there for the object and for what grasps; feet and pedestals stand on it.
+- The floor is there for the object and for hands, whether they grasp or not; feet and pedestals stand on it.
 - Within a body, solids on one joint do not move against each other. Of two bodies next to each other along the chain
   those of a robot are exempt, and the one that stands against the first that moves; of a person's, those that are at
-  the joint between them.
+  the joint between them. A person's thighs and belly meet where the hip bends: soft tissue gives way there.
 - What stands (an obstacle, a foot, a pedestal) is checked against what stands of others too: it may be placed wrong.
 """
 
@@ -21,10 +21,12 @@ from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.solids import FLOOR, Solid, solids_of, solids_of_object
 from liftopt.types import Array
 
+PERSON = "person"
 OBJECT, OBSTACLE, FLOOR_KIND = "object", "obstacle", "floor"
-KINDS = ("person", "robot", OBJECT, OBSTACLE, FLOOR_KIND)
+KINDS = (PERSON, "robot", OBJECT, OBSTACLE, FLOOR_KIND)
 # A solid is at a joint that is within it, or no farther from it than this share of the other solid's radius.
 AT_JOINT = 1.25
+SOFT = ("thigh", "abdomen")  # end the names of a person's solids that give way to each other
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +79,8 @@ def solid_pairs(
         holds = grasping_joints(agent)
         pairs += _between(agent.kind, [solid for solid in solids if solid.joint not in holds], OBJECT, box)
         pairs += _between(agent.kind, solids, OBSTACLE, obstacles)
-        pairs += _between(agent.kind, [solid for solid in solids if solid.joint in holds], FLOOR_KIND, [FLOOR])
+        hands = _carriers(agent, agent.hands)
+        pairs += _between(agent.kind, [solid for solid in solids if solid.joint in hands], FLOOR_KIND, [FLOOR])
     pairs += _between(OBJECT, box, OBSTACLE, obstacles)
     pairs += _between(OBJECT, box, FLOOR_KIND, [FLOOR])
     return tuple(pairs)
@@ -85,8 +88,12 @@ def solid_pairs(
 
 def grasping_joints(agent: Agent) -> frozenset[int]:
     """Return the joints of the reduced model that carry the frames an agent grasps with."""
+    return _carriers(agent, [grasp.frame for grasp in agent.grasps])
+
+
+def _carriers(agent: Agent, frames: Sequence[str]) -> frozenset[int]:
     model = agent.reduced()
-    return frozenset(int(model.frames[model.getFrameId(grasp.frame)].parentJoint) for grasp in agent.grasps)
+    return frozenset(int(model.frames[model.getFrameId(frame)].parentJoint) for frame in frames)
 
 
 def _between(kind: str, solids: Sequence[Solid], other: str, others: Sequence[Solid]) -> Iterator[SolidPair]:
@@ -107,9 +114,16 @@ def _within(agent: Agent, solids: Sequence[Solid]) -> Iterator[SolidPair]:
             continue
         path = paths[min(one.joint, other.joint), max(one.joint, other.joint)]
         neighbours = not bearing & set(path[1:-1])
+        if agent.kind == PERSON and _give_way(one, other):
+            continue
         if neighbours and (agent.kind == "robot" or 0 in path or _at_joint(data, one, other, path)):
             continue
         yield SolidPair(one, other, agent.kind)
+
+
+def _give_way(one: Solid, other: Solid) -> bool:
+    """Return whether two solids of a person are soft where they meet: the range of the joints is what limits them."""
+    return any(one.name.endswith(a) and other.name.endswith(b) for a, b in (SOFT, SOFT[::-1]))
 
 
 def _path(up: Sequence[int], down: Sequence[int]) -> list[int]:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject, Stance
 from liftopt.types import Array
 
 GRAVITY = 9.81  # m/s^2, as in the models
@@ -35,9 +35,12 @@ class AgentTrajectory:
         grasp_position: (K, grasps, 3) the agent's grasp points in the world [m].
         grip_rotation: (K, grasps, 3, 3) grip axes in the world: the object's if that hand is in its reference
             orientation.
-        ground_force, ground_moment: (K, 3) reaction of the ground on the agent at its base point, world axes.
+        ground_force, ground_moment: (K, 3) reaction of the ground on the agent at its base point, world axes; of one
+            who stands, on the feet too, at their origin.
         limits: of the moving joints.
         grasps: how it holds the object.
+        stance: how it stands, None where its base holds it whatever it does.
+        p_world_base: (3,) its base point [m].
     """
 
     name: str
@@ -56,6 +59,20 @@ class AgentTrajectory:
     ground_moment: Array
     limits: JointLimits
     grasps: tuple[Grasp, ...]
+    stance: Stance | None
+    p_world_base: Array
+
+    @property
+    def centre_of_pressure(self) -> Array | None:
+        """Where on the floor (K, 3) the ground bears one who stands, in the world [m]; NaN where it would have to pull.
+
+        The reaction there has no moment but about the vertical.
+        """
+        if self.stance is None:
+            return None
+        vertical = np.where(self.ground_force[:, 2] > 0.0, self.ground_force[:, 2], np.nan)
+        aside = np.stack([-self.ground_moment[:, 1], self.ground_moment[:, 0], 0.0 * vertical], axis=1)
+        return np.asarray(self.p_world_base + aside / vertical[:, None])
 
     @property
     def load(self) -> Array:
@@ -74,7 +91,7 @@ class AgentTrajectory:
 
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        constant = ("name", "kind", "joint_names", "moving", "limits", "grasps")
+        constant = ("name", "kind", "joint_names", "moving", "limits", "grasps", "stance", "p_world_base")
         over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
         return replace(self, **over_time)
 
@@ -136,7 +153,7 @@ def agent_trajectory(
         # The wrench that the first joint transmits holds all that moves against gravity and its own motion; what is
         # fixed to the ground (a robot's pedestal) is not part of it.
         root[k] = data.oMi[1].act(data.f[1]).vector
-    p_world_base = model.jointPlacements[1].translation
+    p_world_base = model.jointPlacements[1].translation if agent.stance is None else agent.T_world_base[:3, 3]
     ground_force, ground_moment = root[:, :3], root[:, 3:] - cross(p_world_base, root[:, :3])
     for g, (frame, grasp) in enumerate(zip(frames, agent.grasps, strict=True)):
         f, m, p = force[:, g], moment[:, g], point[:, g]
@@ -145,9 +162,13 @@ def agent_trajectory(
         tau += np.einsum("kci,kc->ki", slopes, wrench) * bearing(model, frame.parentJoint)
         grip[:, g] = grip[:, g] @ frame.placement.rotation @ grasp.R_hand_object
         ground_force, ground_moment = ground_force + f, ground_moment + cross(p - p_world_base, f) + m
+    if agent.stance is not None:
+        weight = np.array([0.0, 0.0, GRAVITY * agent.stance.mass])
+        lever = agent.T_world_base[:3, :3] @ agent.stance.p_base_com
+        ground_force, ground_moment = ground_force + weight, ground_moment + cross(lever, weight)
     return AgentTrajectory(
         agent.name, agent.kind, names, moving, full_q, full_v, full_a, tau, force, moment, point, grip,
-        ground_force, ground_moment, agent.limits, agent.grasps,
+        ground_force, ground_moment, agent.limits, agent.grasps, agent.stance, np.array(p_world_base),
     )  # fmt: skip
 
 
@@ -172,6 +193,11 @@ def bearing(model: pin.Model, carrier: int) -> Array:
     for joint in model.supports[carrier].tolist()[1:]:
         on[model.idx_vs[joint] : model.idx_vs[joint] + model.nvs[joint]] = 1.0
     return on
+
+
+def mirrored(matrices: Array) -> Array:
+    """Return symmetric matrices (K, n, n) from their upper triangles, all that Pinocchio fills of a mass matrix."""
+    return np.triu(matrices) + np.triu(matrices, 1).swapaxes(1, 2)
 
 
 def object_trajectory(

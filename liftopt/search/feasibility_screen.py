@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from liftopt.assessment.who import whose
+from liftopt.assessment.who import whose_hold
 from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
@@ -98,7 +98,8 @@ def _screen_end(
         return _outside(problem, name, beyond.outside[best], beyond.twisted[best]), near
     gaps = reach.gaps[nearest]
     who = problem.team.grasps[int(np.argmax(gaps))].name
-    text = f"out of reach at the {name} of the lift: {whose(who)} grasp stays {gaps.max():.3f} m short"
+    whose = whose_hold(who, problem.team.agents)
+    text = f"out of reach at the {name} of the lift: {whose} grasp stays {gaps.max():.3f} m short"
     text += _range_of_motion(problem, kinematics, pose, again, deadline)
     return InfeasibilityReason("grasp_closure", who, float(gaps.max()), "m", text), near
 
@@ -108,11 +109,13 @@ def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> Inf
         grasp = problem.team.grasps[int(np.argmax(twisted))]
         limit, lacking = grasp.max_turn, float(twisted.max())
         amount = float(np.degrees(np.arccos(np.clip(np.cos(limit) - lacking, -1.0, 1.0)) - limit))
-        text = f"held back at the {name} of the lift: {whose(grasp.name)} hand would have to turn "
+        whose = whose_hold(grasp.name, problem.team.agents)
+        text = f"held back at the {name} of the lift: {whose} hand would have to turn "
         text += f"{amount:.0f} deg farther on the object than the {np.degrees(limit):.0f} deg allowed"
         return InfeasibilityReason("grasp_turn", grasp.name, amount, "deg", text)
     who, amount = problem.team.grasps[int(np.argmax(outside))].name, float(outside.max())
-    text = f"held back at the {name} of the lift: {whose(who)} grasp would lie {amount:.3f} m outside its half-space"
+    whose = whose_hold(who, problem.team.agents)
+    text = f"held back at the {name} of the lift: {whose} grasp would lie {amount:.3f} m outside its half-space"
     return InfeasibilityReason("workspace", who, amount, "m", text)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.assessment.who import whose
+from liftopt.assessment.who import whose_hold
 from liftopt.collocation.elastic_mode import ElasticMotion, Violation, solve_elastic
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
@@ -98,14 +98,16 @@ def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
     """Return a violation as a reason, in words."""
     who, amount, at = violation.who, violation.amount, f"at {violation.time:.2f} s"
     share, lifted = f"{100 * violation.share:.0f} %", problem.team.object.name
+    grasps = {grasp.name for grasp in problem.team.grasps}
+    whose = whose_hold(who, problem.team.agents) if who in grasps else ""
     words = {
-        "grasp_closure": f"{whose(who)} grasp stays {amount:.3f} m off the {lifted} {at}",
+        "grasp_closure": f"{whose} grasp stays {amount:.3f} m off the {lifted} {at}",
         "clearance": f"{who} come {amount:.3f} m too near each other {at}",
-        "workspace": f"{whose(who)} grasp lies {amount:.3f} m outside its half-space {at}",
+        "workspace": f"{whose} grasp lies {amount:.3f} m outside its half-space {at}",
         "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
-        "grasp_force": f"{whose(who)} grasp needs {amount:.3g} N ({share}) more than its cap {at}",
-        "grasp_moment": f"{whose(who)} grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
-        "grasp_turn": f"{whose(who)} hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",
+        "grasp_force": f"{whose} grasp needs {amount:.3g} N ({share}) more than its cap {at}",
+        "grasp_moment": f"{whose} grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
+        "grasp_turn": f"{whose} hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",
         "friction": f"flat hand: {who} it slides or lifts, {amount:.3g} N short of its friction {at}",
         "pressure": f"flat hand: {who} it tips or turns, {amount:.3g} Nm beyond its breadth {at}",
         "sole_friction": f"the feet of {who} slip, {amount:.3g} N beyond their friction on the floor {at}",

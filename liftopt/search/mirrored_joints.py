@@ -26,12 +26,14 @@ def mirrored_joints(problem: Problem, x: Array) -> Iterator[InitialGuess]:
     for i, agent in enumerate(problem.team.agents):
         columns = problem.layout.control[:, problem.layout.columns(i)]
         lower, upper = agent.limits.q_lower, agent.limits.q_upper
-        for j, straight in enumerate(in_line(agent)[1:-1], 1):
+        between = neighbours(agent)
+        for j, straight in enumerate(in_line(agent)):
             q = x[columns]
             if not np.abs(q[:, j] - straight).mean() >= STRAIGHT:  # a NaN is not
                 continue
             q[:, j] = 2 * straight - q[:, j]
-            for k, turns in ((j - 1, HALF_TURN), (j, WHOLE_TURN), (j + 1, HALF_TURN)):
+            before, after = between[j]
+            for k, turns in ((before, HALF_TURN), (j, WHOLE_TURN), (after, HALF_TURN)):
                 q[:, k] = min((q[:, k] + turn for turn in turns), key=lambda c: _outside(c, lower[k], upper[k]))
             if max(_outside(*joint) for joint in zip(q.T, lower, upper, strict=True)) > MISSED:
                 continue
@@ -44,10 +46,20 @@ def in_line(agent: Agent) -> Array:
     """Return the angle (n,) of each joint at which the axes of its neighbours are parallel; NaN where there is none."""
     model, found = agent.reduced(), np.full(len(agent.posture), np.nan)
     axes = pin.computeJointJacobians(model, model.createData(), np.zeros(model.nq)).reshape(6, -1)[3:].T
-    for j in range(1, len(found) - 1):
-        before, after = (axes[k] - axes[j] * (axes[k] @ axes[j]) for k in (j - 1, j + 1))
+    for j, ends in neighbours(agent).items():
+        before, after = (axes[k] - axes[j] * (axes[k] @ axes[j]) for k in ends)
         if min(np.linalg.norm(before), np.linalg.norm(after)) > PARALLEL:
             found[j] = np.arctan2(axes[j] @ np.cross(after, before), after @ before)
+    return found
+
+
+def neighbours(agent: Agent) -> dict[int, tuple[int, int]]:
+    """Return which joints come before and after each joint; of those with a joint before and just one after."""
+    parents, found = agent.reduced().parents.tolist(), {}
+    for joint in range(1, len(parents)):
+        after = [j for j, parent in enumerate(parents) if parent == joint]
+        if parents[joint] and len(after) == 1:
+            found[joint - 1] = (parents[joint] - 1, after[0] - 1)
     return found
 
 

@@ -135,7 +135,7 @@ def combinations(moves: Sequence[Sequence[Move]], count: int) -> list[tuple[int 
 def _blended(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> tuple[Array, Array]:
     """Return what every part adds to the objective of each pair's blend (parts, B), and how far hands turn (agents, B).
 
-    The latter is by how much the cosine of an agent's hand on the object is beyond its limit, a mean over time.
+    The latter is by how much the cosine of an agent's hands on the object is beyond its limit, a mean over time.
     """
     batch, terms, turned = Batch(problem), [], []
     blocks = [block for block in problem.constraints.blocks if block.name == "grasp_turn"]
@@ -145,7 +145,8 @@ def _blended(problem: Problem, pairs: Sequence[tuple[Posture, Posture]]) -> tupl
         g = batch.rows(blends) if blocks else np.zeros((len(blends), 0))
         missed = np.zeros((len(problem.team.agents), len(blends)))
         for i, agent in enumerate(problem.team.agents):
-            own = [np.maximum(0.0, block.lower - g[:, block.rows]) for block in blocks if block.who == agent.name]
+            names = [grasp.name for grasp in agent.grasps]
+            own = [np.maximum(0.0, block.lower - g[:, block.rows]) for block in blocks if block.who in names]
             missed[i] = np.hstack(own).mean(axis=1) if own else 0.0
         turned.append(missed)
     return np.hstack(terms), np.hstack(turned)

@@ -110,6 +110,9 @@ def _of_ground(solution: Solution) -> dict[str, Variable]:
         moment = f"moment of the ground on the {person.name} at the foot origin, world axes"
         variables[f"{prefix}ground_reaction_force"] = _variable(dimensions, person.ground_force, "N", force)
         variables[f"{prefix}ground_reaction_moment"] = _variable(dimensions, person.ground_moment, "N m", moment)
+        if (pressure := person.centre_of_pressure) is not None:
+            where = f"centre of pressure of the {person.name} on the floor, in the world"
+            variables[f"{prefix}centre_of_pressure"] = _variable(dimensions, pressure, "m", where)
     return variables
 
 

@@ -23,6 +23,7 @@ from liftopt.viz.plots_forces import grasp_forces, ground_reaction, object_motio
 from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, robot_angles, robot_torques
 from liftopt.viz.plots_recorded import recorded_angles
 from liftopt.viz.plots_snapshots import snapshots
+from liftopt.viz.plots_spine import spine_load
 from liftopt.viz.plots_style import STYLE, head
 
 PNG_DPI = 200
@@ -142,6 +143,14 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
         "strength_used",
         "Share of {who}'s strength that each joint uses over the lift.",
         strength_used,
+    ),
+    AgentPlot(
+        "person",
+        "spine_load",
+        "spine_load",
+        "Load on the lumbar spine of {who} at L5/S1: compression by a single equivalent muscle, shear and net moments, "
+        "beside the limits of NIOSH and of Gallagher and Marras. An estimate.",
+        spine_load,
     ),
     AgentPlot(
         "person",

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.ergonomics.scores import PostureScores
 from liftopt.multibody.joint_curves import ANATOMY
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.types import Array
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
 
-ACTION_LEVELS = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
+Levels = tuple[tuple[float, str], ...]
+ACTION_LEVELS: Levels = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
+REBA_LEVELS: Levels = ((3.5, "low risk"), (7.5, "investigate"), (10.5, "change soon"), (12.5, "change now"))
 
 
 def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
@@ -44,18 +49,17 @@ def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
 
 
 def posture_score(lift: Lift, agent: AgentTrajectory) -> Figure:
-    """Return the grand score of RULA over time, and the scores it is made of."""
+    """Return the grand score of RULA over time, the scores it is made of, and REBA's of a person with legs."""
     solution = lift.dense
-    scores, time = ergonomics_of(solution, agent).rula, percent(solution.time)
-    figure, grid = panels(2, height=1.5)
-    grand, parts = (line[0] for line in grid)
-    low = 0.5
-    for level, (high, action) in enumerate(ACTION_LEVELS):
-        grand.axhspan(low, high, facecolor=str(0.97 - 0.07 * level), zorder=0)
-        grand.text(99.0, (low + high) / 2, action, ha="right", va="center", fontsize=7.5, color=INK)
-        low = high
-    grand.step(time, scores.grand, where="post", color=INK, linewidth=2.2)
-    grand.set(title="RULA grand score", ylabel="score", yticks=range(1, 8), ylim=(0.5, 7.5))
+    ergonomics, time = ergonomics_of(solution, agent), percent(solution.time)
+    scores, entire = ergonomics.rula, ergonomics.reba
+    figure, grid = panels(2 + (entire is not None), height=1.5)
+    grand, parts = (line[0] for line in grid[:2])
+    _grand(grand, time, scores, ACTION_LEVELS)
+    grand.set(title="RULA grand score", ylabel="score", yticks=range(1, 8))
+    if entire is not None:
+        _grand(grid[2][0], time, entire, REBA_LEVELS)
+        grid[2][0].set(title="REBA grand score", ylabel="score", yticks=range(1, 13, 2))
     for values, line, label, shift in (
         (scores.upper_arm, LINES[0], "upper arm", 0.09),
         (scores.lower_arm, LINES[1], "lower arm", 0.03),
@@ -71,3 +75,14 @@ def posture_score(lift: Lift, agent: AgentTrajectory) -> Figure:
     parts.legend(ncols=5, loc="upper center", fontsize=7.5)
     time_axes(grid, float(solution.time[-1]))
     return figure
+
+
+def _grand(axes: Axes, time: Array, scores: PostureScores, levels: Levels) -> None:
+    """Draw a grand score over percent of the lift, above bands of what it asks for."""
+    low = 0.5
+    for level, (high, action) in enumerate(levels):
+        axes.axhspan(low, high, facecolor=str(0.97 - 0.07 * level), zorder=0)
+        axes.text(99.0, (low + high) / 2, action, ha="right", va="center", fontsize=7.5, color=INK)
+        low = high
+    axes.step(time, scores.grand, where="post", color=INK, linewidth=2.2)
+    axes.set_ylim(0.5, low)

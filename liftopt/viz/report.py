@@ -13,7 +13,8 @@ from markupsafe import Markup
 import liftopt
 from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.assessment.who import who_is
-from liftopt.ergonomics.rula import ASSUMPTIONS
+from liftopt.ergonomics.reba import ASSUMPTIONS as REBA_ASSUMPTIONS
+from liftopt.ergonomics.rula import ASSUMPTIONS as RULA_ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
 from liftopt.scenario.grasps import grasp_heights
@@ -40,6 +41,12 @@ HEADLINES: tuple[tuple[Kind, str, str, str], ...] = (
     ("person", "person.load_share", "of the load is on the person at most", "of the load is on {} at most"),
     ("person", "person.grasp_force", "on the person's hand at most", "on {}'s hand at most"),
     ("robot", "robot.torque", "of a robot joint's torque limit", "of the torque limit of a joint of {}"),
+    (
+        "person",
+        "person.spine_compression",
+        "presses on the lowest disc at most; 3400 N is the action limit",
+        "presses on the lowest disc of {} at most",
+    ),
     ("person", "person.posture", "RULA posture score at worst; 7 is bad", "RULA posture score of {}; 7 is bad"),
 )
 
@@ -92,7 +99,8 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "near_limit": 100 * NEAR_LIMIT,
         "apart": clearance_rows(lift.dense.clearance),
         "touch": 1e3 * TOUCH,
-        "rula_assumptions": ASSUMPTIONS,
+        "rula_assumptions": RULA_ASSUMPTIONS,
+        "reba_assumptions": REBA_ASSUMPTIONS,
         "entries": scenario_rows(solution.scenario),
         "checks": check_rows(summary),
         "sources": source_rows(solution),

@@ -175,6 +175,24 @@ def make_arm() -> Callable[..., Agent]:
     return chain_agent
 
 
+def central_differences(function: Callable[[np.ndarray], np.ndarray], y: np.ndarray) -> np.ndarray:
+    """Return the Jacobian by central differences of sixth order."""
+    h, columns = 1e-2, []
+    for e in np.eye(len(y)):
+        columns.append(
+            sum(
+                w * (function(y + k * h * e) - function(y - k * h * e)) / h
+                for k, w in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
+            )
+        )
+    return np.transpose(columns)
+
+
+@pytest.fixture(scope="session")
+def differences() -> Callable[..., np.ndarray]:
+    return central_differences
+
+
 @pytest.fixture(scope="session")
 def make_box() -> Callable[..., LiftedObject]:
     return box

@@ -9,46 +9,42 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.collocation import kkt
 from liftopt.collocation.dynamics import KnotFunctions, Topology
 from liftopt.collocation.kkt import kkt_error
+from liftopt.collocation.kkt_agent import agent_knots
+from liftopt.collocation.kkt_object import object_knots
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.multibody.agent import Agent, LiftedObject
 
 
-def differences(function: Callable[[np.ndarray], np.ndarray], y: np.ndarray) -> np.ndarray:
-    """Return the Jacobian by central differences of sixth order."""
-    h, columns = 1e-2, []
-    for e in np.eye(len(y)):
-        columns.append(
-            sum(
-                w * (function(y + k * h * e) - function(y - k * h * e)) / h
-                for k, w in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
-            )
-        )
-    return np.transpose(columns)
-
-
 @pytest.mark.parametrize("name", ["human", "sawyer", "arm"])
 def test_agent_knot_jacobian_by_finite_differences(
-    name: str, human: Agent, sawyer: Agent, make_arm: Callable[..., Agent], rng: np.random.Generator
+    name: str,
+    human: Agent,
+    sawyer: Agent,
+    make_arm: Callable[..., Agent],
+    differences: Callable[..., np.ndarray],
+    rng: np.random.Generator,
 ) -> None:
     agent = {"human": human, "sawyer": sawyer, "arm": make_arm(5)}[name]
     y = rng.normal(size=3 * agent.reduced().nv + 3)
     y[-3:] *= 20.0
-    jacobian = kkt._agent_knots(agent, y[None], 1.7)[1][0]
-    numeric = differences(lambda at: kkt._agent_knots(agent, at[None], 1.7)[0][0], y)
+    jacobian = agent_knots(agent, y[None], 1.7)[1][0]
+    numeric = differences(lambda at: agent_knots(agent, at[None], 1.7)[0][0], y)
     np.testing.assert_allclose(jacobian, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
 
 def test_object_knot_jacobian_by_finite_differences(
-    make_box: Callable[..., LiftedObject], table: LiftedObject, rng: np.random.Generator
+    make_box: Callable[..., LiftedObject],
+    table: LiftedObject,
+    differences: Callable[..., np.ndarray],
+    rng: np.random.Generator,
 ) -> None:
     for lifted in (table, make_box(rng.normal(size=(3, 3)))):
         y = rng.normal(size=18 + 3 * len(lifted.grasp_frames))
-        jacobian = kkt._object_slopes(lifted, y[None], 1.7)[0]
-        numeric = differences(lambda at, lifted=lifted: kkt._object_outputs(lifted, at[None], 1.7)[0], y)
+        jacobian = object_knots(lifted, y[None], 1.7, bare=True)[1][0]
+        numeric = differences(lambda at, lifted=lifted: object_knots(lifted, at[None], 1.7, bare=True)[0][0], y)
         np.testing.assert_allclose(jacobian, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
 
@@ -61,14 +57,14 @@ def test_knots_agree_with_the_uncompiled_functions(
     """Pinocchio's values in double precision against CasADi's, an independent path of both."""
     _, topology, functions = knot_functions["human"]
     y = rng.normal(size=33)
-    (c,), (jacobian,) = kkt._agent_knots(human, y[None], 1.3)
+    (c,), (jacobian,) = agent_knots(human, y[None], 1.3)
     p = np.r_[1.3, topology.parameters]
     np.testing.assert_allclose(functions.value(y, p).full().ravel(), c, rtol=0, atol=1e-12 * np.abs(c).max())
     expected = functions.jacobian(y, p).full()
     np.testing.assert_allclose(expected, jacobian, rtol=0, atol=1e-12 * np.abs(expected).max())
     _, topology, functions = knot_functions["table"]
     y = rng.normal(size=24)
-    (c,), (jacobian,) = kkt._object_outputs(table, y[None], 1.3), kkt._object_slopes(table, y[None], 1.3)
+    (c,), (jacobian,) = object_knots(table, y[None], 1.3, bare=True)
     p = np.r_[1.3, topology.parameters]
     np.testing.assert_allclose(functions.value(y, p).full().ravel(), c, rtol=0, atol=1e-12 * np.abs(c).max())
     expected = functions.jacobian(y, p).full()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from liftopt.ergonomics.posture import ArmPosture, Posture
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.scenario.build import agents_of
 from liftopt.solution.solution import Solution
@@ -34,3 +35,20 @@ def posed(solution: Any) -> Callable[..., Solution]:
         return replace(solution, agents=(human, solution.agents[1]))
 
     return pose
+
+
+@pytest.fixture
+def one_armed() -> Callable[..., Posture]:
+    """Return a function that makes a posture with the right arm.
+
+    It is upright, the elbow at 80 deg, thumb up, without load, but for what it is given.
+    """
+
+    def posture(**values: float) -> Posture:
+        names = [field.name for field in (*fields(Posture), *fields(ArmPosture)) if field.name not in ("arms", "side")]
+        given = dict.fromkeys(names, 0.0) | {"elbow_flexion": 80.0, "wrist_across": -0.2, "heavier_foot": 0.5} | values
+        arrays = {name: np.array([value]) for name, value in given.items()}
+        arm = {field.name: arrays.pop(field.name) for field in fields(ArmPosture) if field.name != "side"}
+        return Posture(**arrays, arms=(ArmPosture("right", **arm),))
+
+    return posture

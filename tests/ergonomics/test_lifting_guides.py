@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from liftopt.ergonomics.acgih import acgih_limit
+from liftopt.ergonomics.coupling import coupling_of
+from liftopt.ergonomics.lifting_guides import acgih_measure, iso_measure, niosh_measure
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.niosh import niosh, niosh_terms
 from liftopt.ergonomics.strength import strength_use
@@ -51,6 +53,8 @@ def test_scopes_are_stated(solution: Any) -> None:
     scopes = {measure.name: measure.scope for measure in ergonomics_of(solution, solution["human"]).measures}
     assert scopes == {
         "RULA": "applies",
+        "NIOSH action limit on L5/S1 compression": "indicative",
+        "Gallagher and Marras limit on L5/S1 shear": "indicative",
         "Revised NIOSH lifting equation": "indicative",
         "ISO 11228-1": "out of scope",
         "ACGIH TLV for lifting": "indicative",
@@ -84,3 +88,85 @@ def test_strength_use_is_torque_over_the_limit_in_its_direction(posed: Callable[
     assert tau > 0
     assert use.peak == pytest.approx(tau / 92.0, rel=1e-12)
     assert use.mean == pytest.approx(use.peak, rel=1e-12)
+
+
+@pytest.fixture
+def alone(solution: Any) -> Callable[..., Any]:
+    """Return a function that gives the person of the lift without the robot, slow, with both hands on a small box."""
+
+    def lift(hold: str = "edge", width: float = 0.35, height: float = 0.25, friction: float | None = None) -> Any:
+        human = solution["human"]
+        grasp, apart = replace(human.grasps[0], friction=friction), np.array([0.0, 0.15, 0.0])
+        # The middle between the hands is where the one hand was, and they share its force.
+        person = replace(
+            human,
+            grasps=(replace(grasp, name="human_right"), replace(grasp, name="human_left")),
+            grasp_position=np.concatenate([human.grasp_position - apart, human.grasp_position + apart], axis=1),
+            grasp_force=np.repeat(human.grasp_force / 2.0, 2, axis=1),
+            grasp_moment=np.repeat(human.grasp_moment / 2.0, 2, axis=1),
+        )
+        changes = {"human.body": "whole", "human.hands": ["right", "left"], "object.width": width}
+        holds = {f"object.grasps.human_{hand}": hold for hand in ("right", "left")}
+        scenario = solution.scenario.replace({**changes, **holds, "object.height": height})
+        return replace(solution, scenario=scenario, agents=(person,), time=4.0 * solution.time)
+
+    return lift
+
+
+def aside(lift: Any) -> np.ndarray:
+    """Return how far the middle between the hands is to the left (K, 1, 1) [m]."""
+    return np.asarray(lift.agents[0].p_world_hold[:, None, 1:2])
+
+
+def test_one_who_lifts_alone_with_both_hands_is_in_scope(alone: Callable[..., Any]) -> None:
+    """By hand: fingers under a box of 0.35 x 0.25 m are a fair coupling: 0.95 below 75 cm, 1 from there on."""
+    lift = alone()
+    person = replace(lift.agents[0], grasp_position=lift.agents[0].grasp_position - [0.0, 1.0, 0.0] * aside(lift))
+    equation = niosh(lift, person)
+    told = (niosh_measure(equation), acgih_measure(lift, person, equation), iso_measure(lift))
+    measures = {measure.code: measure for measure in told}
+    assert equation.out_of_scope == ()
+    assert (measures["niosh"].scope, measures["acgih"].scope) == ("applies", "applies")
+    assert (equation.coupling, equation.origin.cm, equation.destination.cm) == ("fair", 1.0, 1.0)
+    assert niosh_terms(40.0, 30.0, 50.0, 0.0, "fair").cm == 0.95
+    assert "force of both hands" in measures["acgih"].reading
+    assert "Outside" not in measures["niosh"].reading
+    assert "shared" not in measures["iso_11228_1"].reading
+
+
+def test_the_middle_between_two_hands_counts_as_the_one_hand_did(alone: Callable[..., Any], solution: Any) -> None:
+    one, two = niosh(solution, solution["human"]), niosh(alone(), alone().agents[0])
+    assert (two.hands, two.is_shared) == (2, False)
+    assert two.origin.horizontal == pytest.approx(one.origin.horizontal)
+    assert two.destination.asymmetry == pytest.approx(one.destination.asymmetry, abs=1e-9)
+    assert two.largest_load == pytest.approx(one.largest_load)
+
+
+@pytest.mark.parametrize(
+    ("held", "wanted"),
+    [
+        ({}, "fair"),
+        ({"width": 0.41}, "poor"),
+        ({"height": 0.31}, "poor"),
+        ({"height": 0.05}, "poor"),  # a plate
+        ({"friction": 0.5}, "poor"),  # a flat hand
+        ({"hold": "side"}, "poor"),
+        ({"hold": "corner"}, "poor"),
+        ({"hold": "bottom"}, "fair"),
+        ({"hold": "handle", "width": 0.6, "height": 0.4}, "good"),
+    ],
+    ids=str,
+)
+def test_coupling_by_box_and_hold(alone: Callable[..., Any], held: dict[str, float], wanted: str) -> None:
+    lift = alone(**held)
+    assert coupling_of(lift, lift.agents[0]) == wanted
+
+
+def test_both_hands_of_a_shared_lift_are_an_indication(alone: Callable[..., Any], solution: Any) -> None:
+    lift = alone()
+    shared = replace(lift, agents=(lift.agents[0], solution["robot"]))
+    equation = niosh(shared, shared.agents[0])
+    assert [why.split(":")[0] for why in equation.out_of_scope] == ["it is not for a load that is shared"]
+    assert niosh_measure(equation).scope == "indicative"
+    assert "A partner who gives way" in niosh_measure(equation).reading
+    assert acgih_measure(shared, shared.agents[0], equation).scope == "indicative"

@@ -12,6 +12,7 @@ import pytest
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.niosh import niosh
 from liftopt.ergonomics.posture import posture_of
+from liftopt.ergonomics.spine import spine_load
 from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.scenario.build import agent_of
@@ -24,16 +25,21 @@ def test_where_a_person_stands_and_faces_changes_nothing(solution: Any, heading:
     stand = {"human.position": [0.3, -0.2], "human.heading_deg": heading}
     scenario = solution.scenario.replace({**stand, "task.start": place, "task.end": place})
     agent, moving = agent_of(scenario, "human"), human.moving
-    force = human.load @ rotation_z(np.radians(heading))[:3, :3].T
-    turned = agent_trajectory(agent, human.q[:, moving], human.v[:, moving], human.a[:, moving], force)
+    rotation = rotation_z(np.radians(heading))[:3, :3].T
+    force, moment = human.grasp_force @ rotation, human.grasp_moment @ rotation
+    turned = agent_trajectory(agent, human.q[:, moving], human.v[:, moving], human.a[:, moving], force, moment)
     elsewhere = replace(solution, scenario=scenario, urdfs={}, agents=(turned, solution.agents[1]))
     here, there = posture_of(solution, human), posture_of(elsewhere, turned)
-    for name, values in vars(here).items():
-        np.testing.assert_allclose(getattr(there, name), values, atol=1e-6, err_msg=name)
-    one, other = niosh(solution, human), niosh(elsewhere, turned)
-    for name, value in vars(one.origin).items():
-        assert getattr(other.origin, name) == pytest.approx(value, abs=1e-6), name
-    assert other.lifting_index == pytest.approx(one.lifting_index, rel=1e-9)
+    for one, other in ((here, there), (here.arm("right"), there.arm("right"))):
+        for name in (name for name, values in vars(one).items() if isinstance(values, np.ndarray)):
+            np.testing.assert_allclose(getattr(other, name), getattr(one, name), atol=1e-6, err_msg=name)
+    back, same = spine_load(solution, human), spine_load(elsewhere, turned)
+    for name, values in vars(back).items():
+        np.testing.assert_allclose(getattr(same, name), values, atol=1e-6, err_msg=name)
+    equation, again = niosh(solution, human), niosh(elsewhere, turned)
+    for name, value in vars(equation.origin).items():
+        assert getattr(again.origin, name) == pytest.approx(value, abs=1e-6), name
+    assert again.lifting_index == pytest.approx(equation.lifting_index, rel=1e-9)
 
 
 def test_each_persons_measures_are_their_own(team_solution: Callable[[str], Any]) -> None:

@@ -10,10 +10,13 @@ import pytest
 
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.subject import Sex, Subject
+from liftopt.multibody.person.whole_body import whole_human_agent
+from liftopt.multibody.person.whole_joints import JOINTS, table_joint
 from liftopt.multibody.solid_pairs import grasping_joints, solid_pairs
 from liftopt.multibody.solids import placed_box, solids_of
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
+from liftopt.types import Array
 
 TEAMS = Path(__file__).parents[1] / "scenario" / "teams"
 TABLE5 = load_scenario()
@@ -79,6 +82,72 @@ def test_an_arm_that_hangs_is_in_nothing(
     for q in (np.zeros(10), np.radians([0, 0, 0, 0, 0, 0, 0, -80, 0, 0]), agent.posture):
         nearest = coal_distance.own_distances(agent, pairs, q)
         assert min(nearest.values()) > 0.0, min(nearest, key=lambda pair: nearest[pair])
+
+
+# Angles [deg] of a whole person, both arms alike.
+SQUAT = {"ankle": 27.0, "knee": 105.0, "hip": 95.0, "Q2": 20.0}
+SEMI = {"ankle": 18.0, "knee": 70.0, "hip": 90.0, "Q2": 22.0}
+STOOP = {"ankle": -3.0, "knee": 15.0, "hip": 60.0, "Q2": 45.0}
+HANG, CARRY = {"Q8": -80.0}, {"Q4": -15.0, "Q7": -60.0, "Q8": -60.0}
+REACH = {"Q4": -8.0, "Q5": 25.0, "Q7": -20.0, "Q8": -80.0}
+POSTURES = {
+    "upright": {}, "hanging": HANG, "carrying": CARRY,
+    **{f"{name}, {way}": legs | {"lean": 1.0} | arms
+       for name, legs in (("squat", SQUAT), ("semi-squat", SEMI), ("stoop", STOOP))
+       for way, arms in (("reaching", REACH), ("carrying", CARRY))},
+}  # fmt: skip
+
+
+def _whole(posture: dict[str, float]) -> Array:
+    """Return joint angles (20,) [rad]; with ``lean`` the arms hang from a trunk that leans, or reach from there."""
+    lean = posture.get("ankle", 0.0) - posture.get("knee", 0.0) + posture.get("hip", 0.0) + posture.get("Q2", 0.0)
+    raised = {"Q5": posture.get("Q5", 0.0) + lean * posture.get("lean", 0.0)}
+    return np.radians([(posture | raised).get(table_joint(joint), 0.0) for joint in JOINTS])
+
+
+@pytest.mark.parametrize("sex", ["male", "female"])
+@pytest.mark.parametrize("stature", [1.5, 1.75, 1.95])
+@pytest.mark.parametrize("body_mass_index", [17.0, 24.5, 35.0])
+def test_a_whole_person_is_in_nothing_of_itself(
+    sex: Sex, stature: float, body_mass_index: float, coal_distance: ModuleType
+) -> None:
+    """Upright, in squats and in stoops, arms hanging, reaching to the floor and bent as with a box."""
+    agent = whole_human_agent(Subject(stature, body_mass_index * stature**2, sex))
+    pairs = solid_pairs([agent], object_of(TABLE5))
+    for name, posture in POSTURES.items():
+        q = _whole(posture)
+        assert np.all(agent.limits.q_lower <= q) and np.all(q <= agent.limits.q_upper), name
+        nearest = coal_distance.own_distances(agent, pairs, q)
+        assert min(nearest.values()) > 0.0, (name, min(nearest, key=lambda pair: nearest[pair]))
+
+
+def test_thighs_and_belly_give_way_and_the_rest_of_a_whole_person_does_not() -> None:
+    agent = whole_human_agent(Subject(1.75, 75.0, "male"))
+    own = {pair.told.replace(" of human", "") for pair in solid_pairs([agent], object_of(TABLE5)) if pair.within_body}
+    for exempt in (
+        "left thigh and left abdomen", "left shank and left thigh", "left thigh and left hip",
+        "right upper arm and shoulders", "left upper arm and shoulders", "left shank and left foot",
+    ):  # fmt: skip
+        one, other = exempt.split(" and ")
+        assert not own & {exempt, f"{other} and {one}"}, exempt
+    for kept in (
+        "left thigh and left chest", "left shank and left hip", "left thigh and left forearm",
+        "right forearm and left forearm", "right hand and left hand", "left shank and right hand",
+    ):  # fmt: skip
+        one, other = kept.split(" and ")
+        assert own & {kept, f"{other} and {one}"}, kept
+
+
+def test_a_box_keeps_off_legs_and_a_free_hand() -> None:
+    agent = whole_human_agent(Subject(1.75, 75.0, "male"), hands=("right",))
+    pairs = solid_pairs([agent], object_of(TABLE5))
+    against = {pair.one.name for pair in pairs if pair.kind == "person-object"}
+    assert {"left shank", "right thigh", "left foot", "right forearm", "left hand"} <= against
+    assert "right hand" not in against
+    both = solid_pairs([whole_human_agent(Subject(1.75, 75.0, "male"))], object_of(TABLE5))
+    assert "left hand" not in {pair.one.name for pair in both if pair.kind == "person-object"}
+    for found in (pairs, both):
+        assert {"left hand", "right hand"} <= {pair.one.name for pair in found if pair.kind == "person-floor"}
 
 
 def test_parts_of_one_body_may_touch() -> None:

@@ -8,9 +8,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from liftopt.crosscheck.tree_dynamics import read_tree, tree_forces
 from liftopt.multibody.agent import Agent, Grasp, JointLimits, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
-from liftopt.multibody.placement import facing
+from liftopt.multibody.person.whole_body import whole_human_agent
+from liftopt.multibody.placement import Placement, facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.multibody.trajectory import agent_trajectory, free_flyer_state, object_trajectory
@@ -193,3 +195,40 @@ def test_free_flyer_state_is_the_derivative_on_pinocchios_manifold(lifted: Lifte
         )
         np.testing.assert_allclose(a, (fast - slow) / (2 * h), atol=1e-8)
         np.testing.assert_allclose(np.linalg.norm(q[3:]), 1.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("hands", [("right", "left"), ("left",)])
+def test_who_stands_has_feet_in_the_ground_reaction_and_a_centre_of_pressure(hands, rng):
+    """Oracle: the recursion over the tree, on numbers read out of the URDF without Pinocchio."""
+    person = whole_human_agent(Subject(1.6, 58.0, "female"), place=Placement(0.7, -0.3, 2.5), hands=hands)
+    q, v, a = (factor * rng.uniform(-0.5, 0.5, (30, 20)) for factor in (1.0, 2.0, 5.0))
+    force, moment = rng.uniform(-40.0, 40.0, (2, 30, len(hands), 3))
+    found = agent_trajectory(person, q, v, a, force, moment)
+    loads = {grasp.frame: (-force[:, g], -moment[:, g]) for g, grasp in enumerate(person.grasps)}
+    expected = tree_forces(read_tree(person.urdf, found.joint_names), q, v, a, loads)
+    base = np.array([0.7, -0.3, 0.0])
+    np.testing.assert_allclose(found.tau, expected.tau, rtol=1e-10, atol=1e-9)
+    np.testing.assert_allclose(found.ground_force, expected.force, rtol=1e-10, atol=1e-9)
+    about_base = expected.moment - np.cross(base, expected.force)
+    np.testing.assert_allclose(found.ground_moment, about_base, rtol=1e-10, atol=1e-9)
+    pressure = found.centre_of_pressure
+    assert pressure is not None
+    bears = found.ground_force[:, 2] > 0.0
+    assert bears.any() and np.isnan(pressure[~bears]).all()
+    there = expected.moment - np.cross(pressure, expected.force)
+    np.testing.assert_allclose(there[bears, :2], 0.0, atol=1e-9)
+    np.testing.assert_array_equal(pressure[bears, 2], 0.0)
+
+
+def test_who_stands_still_presses_below_the_centre_of_mass():
+    """Closed form: without loads and motion, the centre of mass of the whole body, feet included."""
+    person = whole_human_agent(Subject(1.75, 75.0, "male"))
+    still = agent_trajectory(person, person.posture[None], *np.zeros((2, 1, 20)), np.zeros((1, 2, 3)))
+    np.testing.assert_allclose(still.ground_force, [[0.0, 0.0, 75.0 * 9.81]], atol=1e-9)
+    moving = pin.centerOfMass(person.model, person.model.createData(), person.posture)
+    resting = person.model.inertias[0]
+    whole = ((75.0 - resting.mass) * moving + resting.mass * resting.lever) / 75.0
+    assert still.centre_of_pressure is not None
+    np.testing.assert_allclose(still.centre_of_pressure[0, :2], whole[:2], atol=1e-12)
+    arm = human_agent(Subject(1.75, 75.0, "male"))
+    assert agent_trajectory(arm, arm.posture[None], *np.zeros((2, 1, 10)), np.zeros((1, 3))).centre_of_pressure is None

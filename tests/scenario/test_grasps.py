@@ -9,7 +9,7 @@ from liftopt.multibody.person.anthropometry import dimension
 from liftopt.multibody.person.subject import Subject
 from liftopt.scenario.build import task_of
 from liftopt.scenario.grasps import grasp_heights, grasp_points, placed_grasps
-from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.model import Scenario, load_scenario, scenario_from_dict
 
 BOX = {"object.depth": 0.6, "object.width": 0.4, "object.height": 0.3}
 CENTRED = {"task.start": {"x": 0.7, "z": 0.8}, "task.end": {"x": 0.7, "z": 1.1}}
@@ -114,6 +114,30 @@ def test_heights_and_distances_are_those_of_the_middle_of_the_hands() -> None:
     assert (edges[0], edges[2]) == (pytest.approx(0.7), pytest.approx(1.05))
     own = scenario.replace({"task.start": {"x": float(start[0]), "z": float(start[2])}})
     assert grasp_heights(own)[0] == pytest.approx(0.9)
+
+
+def test_two_whole_people_hold_opposite_edges_each_with_hands_of_their_own() -> None:
+    tables = whole().to_dict()
+    tables["agents"] = {"anna": tables["agents"]["human"], "ben": {**tables["agents"]["human"], "stature": 1.9}}
+    points = grasp_points(scenario_from_dict(tables))
+    assert list(points) == ["anna_right", "anna_left", "ben_right", "ben_left"]
+    assert (
+        points["anna_right"][0] == points["anna_left"][0] == -points["ben_right"][0] == -points["ben_left"][0] == -0.3
+    )
+    assert points["anna_right"][1] < 0.0 < points["anna_left"][1]
+    assert points["ben_left"][1] < 0.0 < points["ben_right"][1]  # they face each other
+
+
+def test_one_whole_person_alone_lifts_with_hands_at_the_height_that_is_asked() -> None:
+    tables = whole(human_right="handle", human_left="handle").to_dict()
+    del tables["agents"]["robot"]
+    alone = scenario_from_dict(tables)
+    assert [grasp.name for grasp in placed_grasps(alone)] == ["human_right", "human_left"]
+    start = task_of(alone).start
+    assert (start[0], start[2]) == (
+        pytest.approx(0.4),
+        pytest.approx(0.9 - 0.1),
+    )  # the handles are 0.1 m above the centre
 
 
 def test_point_grasps_that_are_on_no_line_hold_the_roll() -> None:

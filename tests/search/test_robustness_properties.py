@@ -58,14 +58,15 @@ def _moved(pattern: Solution, scenario: Scenario, seed: int) -> Solution:
     """Return a motion of a scenario that is random and solves nothing."""
     rng, knots = np.random.default_rng(seed), len(pattern.time)
     agents, lifted = agents_of(scenario), object_of(scenario)
-    forces = rng.normal(size=(knots, len(agents), 3)) * 50.0
+    forces = rng.normal(size=(knots, len(lifted.grasp_frames), 3)) * 50.0
+    own = np.split(forces, np.cumsum([len(agent.grasps) for agent in agents])[:-1], axis=1)
     moves = [rng.normal(size=(3, knots, len(agent.moving_joints))) for agent in agents]
     texts = {agent.name: agent.urdf for agent in agents} | {lifted.name: lifted.urdf}
     return dataclasses.replace(
         pattern,
         scenario=scenario,
         time=np.linspace(0.0, scenario.duration, knots),
-        agents=tuple(agent_trajectory(a, *m, forces[:, i]) for i, (a, m) in enumerate(zip(agents, moves, strict=True))),
+        agents=tuple(agent_trajectory(a, *m, f) for a, m, f in zip(agents, moves, own, strict=True)),
         object=object_trajectory(lifted, *rng.normal(size=(3, knots, 6)), forces.reshape(knots, -1)),
         urdfs=texts,
     )

@@ -183,7 +183,7 @@ def test_report_in_a_browser(file: Path, chromium: Any) -> None:
     player.wait_for_function("window.liftopt && window.liftopt.ready")
     assert tab.evaluate("document.documentElement.scrollWidth") <= 1200
     sizes = tab.evaluate("[...document.querySelectorAll('figure svg')].map(s => s.getBoundingClientRect().height)")
-    assert len(sizes) == 13
+    assert len(sizes) == 14
     assert min(sizes) > 150
     assert complaints == []
     assert [url for url in requests if not url.startswith(("data:", "blob:", "about:"))] == [file.as_uri()]

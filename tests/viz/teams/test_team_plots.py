@@ -16,7 +16,7 @@ from liftopt.viz.plots import drawn, plots_of, write_plots
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.who import stand_opposite
 
-PERSON = ("arm", "angles", "recorded", "torques", "ground_reaction", "strength_used", "posture_score")
+PERSON = ("arm", "angles", "recorded", "torques", "ground_reaction", "strength_used", "spine_load", "posture_score")
 TURNED = {"human.heading_deg": 90.0, "task.start.human_distance": None, "task.end.human_distance": None}
 WHOLE = ("snapshots", "grasp_forces", "object_motion", "clearance")
 
@@ -44,7 +44,7 @@ def test_every_person_and_robot_has_files_by_name(two_people: Any, two_robots: A
     assert named["grasp_forces"].caption.startswith("Force of anna and ben on the object")
     robots = {f"{name}_{what}" for name in ("near", "far") for what in ("angles", "torques")}
     person = {"human_arm", "human_angles", "recorded_angles", "human_torques", "ground_reaction", "strength_used"}
-    person.add("posture_score")
+    person |= {"spine_load", "posture_score"}
     assert {plot.name for plot in plots_of(Lift.of(two_robots.solution))} == {*WHOLE, *robots, *person}
 
 

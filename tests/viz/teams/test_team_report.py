@@ -52,7 +52,7 @@ def test_two_people_have_sections_of_their_own(people: str) -> None:
     for name, sex in (("anna", "woman"), ("ben", "man")):
         assert f"Person: {name}" in _section(people, f"person-{name}")
         assert f"a typical {sex} in that direction" in _section(people, f"ergonomics-{name}")
-        for what in ("arm", "angles", "torques", "ground_reaction", "strength_used", "posture_score"):
+        for what in ("arm", "angles", "torques", "ground_reaction", "strength_used", "spine_load", "posture_score"):
             assert people.count(f'id="plot-{name}_{what}"') == 1
         assert f"ground reaction on {name}, vertical" in _section(people, "forces")
     assert 'id="robot' not in people
