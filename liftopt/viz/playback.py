@@ -143,16 +143,16 @@ def _holding(solution: Solution, moved: _Moved) -> dict[str, Array]:
     agent, half = moved.agent, _half(solution)
     if agent.kind == "robot":
         length, last = robot_of(solution.scenario, agent).tool.length, list(moved.placements)[-1]
-        return held_by_gripper(
-            agent.name, length, moved.at_zero(last), moved.placements[last], moved.T_world_object, half
-        )
-    subject, holds = subject_in(solution, agent.name), {hold.name: hold.hold for hold in placed_grasps(solution.scenario)}
+        world = moved.placements[last]
+        return held_by_gripper(agent.name, length, moved.at_zero(last), world, moved.T_world_object, half)
+    subject, holds = subject_in(solution, agent.name), placed_grasps(solution.scenario)
+    kinds = {placed.name: placed.hold for placed in holds}
     found: dict[str, Array] = {}
     for arm in PersonBodies.of(agent).arms:
         if arm.hand:
-            hold = holds[agent.grasps[arm.grasp].name]
-            last, world = moved.at_zero(arm.wrist), moved.placements[arm.wrist]
-            found |= held_by_hand(arm.hand, subject, arm.side, hold, last, world, moved.T_world_object, half)
+            hold, world = kinds[agent.grasps[arm.grasp].name], moved.placements[arm.wrist]
+            zero = moved.at_zero(arm.wrist)
+            found |= held_by_hand(arm.hand, subject, arm.side, hold, zero, world, moved.T_world_object, half)
     return found
 
 

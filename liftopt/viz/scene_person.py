@@ -70,12 +70,13 @@ def _trunk(subject: Subject) -> tuple[Mesh, Mesh, Mesh]:
     hips = 0.525 * dimension(subject, "hipbreadth"), 0.53 * dimension(subject, "buttockdepth")
     rise = at.suprasternale - shoulder + 0.055
     slim = 1.02 * waist[0], 1.04 * waist[1]
+    broad, deep = (0.29 * a + 0.71 * b for a, b in zip(hips, slim, strict=True))
     hem = Ring((0.0, 0.0, at.omphalion - 0.05), *hips, 2.4)
-    joint = Ring((0.0, 0.0, at.omphalion), *(0.29 * a + 0.71 * b for a, b in zip(hips, slim, strict=True)), 2.4)
+    joint = Ring((0.0, 0.0, at.omphalion), broad, deep, 2.4)
     # Below and above the joint each goes on under the other: as a dome, nearer to the joint than the ball between them.
     # The section once more before the step: so the side does not share its normals with it.
     under, middle, inner = (
-        [Ring((0.0, 0.0, at.omphalion + z), size * joint.across, size * joint.along, 2.4) for z in (-step, step)]
+        [Ring((0.0, 0.0, at.omphalion + z), size * broad, size * deep, 2.4) for z in (-step, step)]
         for size, step in ((1.0, SEAM), (MIDDLE, SEAM), (INNER, 2.0 * SEAM))
     )
     lower = [hem, joint, under[1], inner[1]]
