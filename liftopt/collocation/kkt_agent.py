@@ -45,6 +45,8 @@ def agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
         jacobian[k, :n, :n], jacobian[k, :n, n : 2 * n], mass_matrix[k] = by_state
     jacobian[:, :n, n : 2 * n] /= period
     jacobian[:, :n, 2 * n : 3 * n] = mirrored(mass_matrix) / period**2
+    if own.leans:
+        outputs[:, own.lean], jacobian[:, own.lean, :n] = _lean(agent, model, q, slopes)
     if own.stands:
         outputs[:, own.ground], jacobian[:, own.ground, : 3 * n] = _bare_ground(agent, model, q, v, a, period)
     room = FORCE_SIZE if agent.pushes_at_a_point else WRENCH_SIZE
@@ -107,6 +109,20 @@ def _add_moment(
         jacobian[:, rows, columns] = rotation.swapaxes(1, 2)
         jacobian[:, rows, attitudes] = np.einsum("kjab,ka->kbj", turning, vector)
         first += 3
+
+
+def _lean(agent: Agent, model: pin.Model, q: Array, slopes: Array) -> tuple[Array, Array]:
+    """Return 1 - cos of the trunk's angle from the vertical (K, 1), and its slopes (K, 1, n)."""
+    assert agent.lean is not None
+    trunk, data = model.getJointId(agent.lean.joint), model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    at_rest, up = data.oMi[trunk].rotation[2].copy(), np.zeros((len(q), 3))
+    for k in range(len(q)):
+        pin.forwardKinematics(model, data, q[k])
+        up[k] = data.oMi[trunk].rotation @ at_rest
+    turning = (slopes * bearing(model, trunk))[:, 3:].swapaxes(1, 2)
+    # A joint turns the trunk's axis about its own: d up / dq_j = w_j x up.
+    return 1.0 - up[:, 2:], -cross(turning, up[:, None])[:, None, :, 2]
 
 
 def _bare_ground(agent: Agent, model: pin.Model, q: Array, v: Array, a: Array, period: float) -> tuple[Array, Array]:

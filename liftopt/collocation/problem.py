@@ -245,7 +245,8 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
             held = {grasp.frame: grasp.R_hand_object for grasp in agent.grasps}
             base = np.eye(4) if agent.stance is None else agent.T_world_base
             grips = [held.get(hand, np.eye(3)) for hand in agent.hands]
-            standing = StandingTopology.standing(model, agent.hands, base, *grips)
+            trunk = agent.lean.joint if agent.lean else ""
+            standing = StandingTopology.standing(model, agent.hands, base, *grips, trunk=trunk)
             requests.append((standing_agent_functions, standing))
     if all(grasp.is_point_contact for agent in agents for grasp in agent.grasps):
         requests.append((object_functions, Topology.of(lifted.model, lifted.grasp_frames)))

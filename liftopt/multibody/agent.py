@@ -144,6 +144,28 @@ class Stance:
 
 
 @dataclass(frozen=True)
+class Lean:
+    """How far an agent's trunk may lean from the vertical.
+
+    Where it leans by an angle theta it costs ``((1 - cos theta) / (1 - cos room))^2``: nothing upright, about the
+    fourth power of the angle near it, one at the end of the room; as much as a joint there, see ``Comfort``.
+
+    Attributes:
+        joint: name of the joint that carries the trunk.
+        room: comfortable angle in any direction [rad].
+        most: largest angle [rad].
+    """
+
+    joint: str
+    room: float
+    most: float
+
+    def cost(self, tilt: Array) -> Array:
+        """Return what leaning costs, where ``tilt`` is 1 - cos theta of any shape."""
+        return np.asarray((tilt / (1.0 - np.cos(self.room))) ** 2)
+
+
+@dataclass(frozen=True)
 class Agent:
     """One who holds the object: a tree of links on a base, with a grasp or several.
 
@@ -160,6 +182,7 @@ class Agent:
         workspace: half-space that its grasp points must stay in, or None.
         comfort: where its joints are at ease, or None for one who does not mind.
         stance: how it stands; None where its base holds it whatever it does.
+        lean: how far its trunk may lean, or None for one without a trunk that does.
     """
 
     name: str
@@ -174,6 +197,7 @@ class Agent:
     workspace: HalfSpace | None = None
     comfort: Comfort | None = None
     stance: Stance | None = None
+    lean: Lean | None = None
 
     @property
     def is_simple(self) -> bool:
