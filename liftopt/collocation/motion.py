@@ -10,6 +10,7 @@ from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.spline import RestToRestSpline, interpolate_linear
 from liftopt.collocation.task import TILT
+from liftopt.multibody.leaning import trunk_tilt
 from liftopt.multibody.trajectory import (
     AgentTrajectory,
     ObjectTrajectory,
@@ -84,6 +85,8 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
     if "range" in (counted := objective_weights(problem)):
         comforts = [agent.comfort for agent in problem.team.agents]
         costs = [c.cost(a.q[:, a.moving]) for c, a in zip(comforts, motion.agents, strict=True) if c is not None]
+        for agent, moved in zip(problem.team.agents, motion.agents, strict=True):
+            costs += [agent.lean.cost(trunk_tilt(agent, moved.q))] if agent.lean else []
         terms["range"] = float(sum(weights @ cost for cost in costs))
     if "tilt" in counted:
         terms["tilt"] = float(weights @ ((motion.object.pose[:, 3:5] / TILT) ** 2).sum(axis=1))

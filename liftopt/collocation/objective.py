@@ -69,6 +69,9 @@ def agent_weights(task: LiftTask, i: int, agent: Agent, n_y: int, posture_weight
         below, above = (
             own + task.spine_weight * period * share**2 for own, share in zip((below, above), agent.spine, strict=True)
         )
+    if agent.lean is not None:
+        own = task.range_weight * period / (1.0 - np.cos(agent.lean.room)) ** 2
+        below, above = np.append(below, own), np.append(above, own)
     return Weights(above, below, variable, _range(agent.comfort, task.range_weight * period))
 
 

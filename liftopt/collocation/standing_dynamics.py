@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from liftopt.collocation import spatial_symbols, standing_knot, tree_dynamics
+from liftopt.collocation import spatial_symbols, standing_knot, standing_place, tree_dynamics
 from liftopt.collocation.dynamics import KnotFunctions, Topology, clean_rotation, symbolic_model
 from liftopt.collocation.standing_knot import StandingKnot
+from liftopt.collocation.standing_place import in_base_axes, place_parameters
 from liftopt.collocation.wrench_dynamics import WrenchTopology
 from liftopt.types import Array
 
@@ -27,12 +28,16 @@ class StandingTopology(WrenchTopology):
 
     Attributes:
         T_world_base: (4, 4) placement of the base, upright.
+        trunk: joint whose link's lean is an output, 0 for none.
     """
 
     T_world_base: Array = field(default_factory=lambda: np.eye(4))
+    trunk: int = 0
 
     @staticmethod
-    def standing(model: pin.Model, frames: tuple[str, ...], T_world_base: Array, *grips: Array) -> StandingTopology:
+    def standing(
+        model: pin.Model, frames: tuple[str, ...], T_world_base: Array, *grips: Array, trunk: str = ""
+    ) -> StandingTopology:
         """Read the topology out of a Pinocchio model.
 
         Args:
@@ -40,44 +45,52 @@ class StandingTopology(WrenchTopology):
             frames: of all hands, whether they hold or not.
             T_world_base: (4, 4) placement of the base, Z up.
             grips: (3, 3) ``Grasp.R_hand_object`` of each hand.
+            trunk: name of the joint whose link's lean is an output, or none.
         """
-        local, T_base_world = model.copy(), pin.SE3(T_world_base).inverse()
-        for j in range(1, model.njoints):
-            if not model.parents[j]:
-                moved = T_base_world * model.jointPlacements[j]
-                local.jointPlacements[j] = pin.SE3(clean_rotation(moved.rotation), moved.translation)
+        local = in_base_axes(model, T_world_base)
         found = WrenchTopology.holding(local, frames, *grips)
-        return StandingTopology(local, frames, found.entries, found.turns, T_world_base)
+        carried = int(model.getJointId(trunk)) if trunk else 0
+        return StandingTopology(local, frames, found.entries, found.turns, T_world_base, carried)
+
+    @property
+    def up(self) -> Array:
+        """Direction (3,) in the trunk's link that is up where all joints are at zero."""
+        data = self.model.createData()
+        pin.forwardKinematics(self.model, data, pin.neutral(self.model))
+        return np.asarray(clean_rotation(data.oMi[self.trunk].rotation)[2] + 0.0)
 
     @property
     def parameters(self) -> Array:
         """Values (p,): of the model's entries that are not structurally zero, of the place and of the grips."""
-        place = [*self.T_world_base[:3, 3], *self.T_world_base[:2, 0]]
+        place = place_parameters(self.T_world_base)
         return np.concatenate([self.entries[self.entries != 0.0], place, *(turn.ravel() for turn in self.turns)])
 
     def signature(self) -> str:
         """Return a digest of all that a kernel is generated from; equal signatures share a kernel."""
         digest = hashlib.sha256(Topology.signature(self).encode())
-        for source in (__file__, spatial_symbols.__file__, standing_knot.__file__, tree_dynamics.__file__):
-            digest.update(Path(source).read_bytes())
+        digest.update(f"{self.trunk} {self.up.tolist()}".encode())
+        for part in (spatial_symbols, standing_knot, standing_place, tree_dynamics):
+            digest.update(Path(str(part.__file__)).read_bytes())
+        digest.update(Path(__file__).read_bytes())
         return digest.hexdigest()
 
 
 def standing_agent_functions(topology: StandingTopology) -> KnotFunctions:
     """Return the functions of an agent: y = (q, q', q'', f_1, m_1 .. f_h, m_h, roll, pitch, yaw).
 
-    The outputs are torques (n,), of each hand (p_world_grasp, f . f, m . m, cosine, f_object, m_object), all as in
-    ``wrench_dynamics``, and force and moment (6,) that the ground exerts on all that moves, the reactions of the grasps
-    included: about the base's origin, in its axes.
+    The outputs are torques (n,), where a trunk is named 1 - cos of its angle from the vertical, of each hand
+    (p_world_grasp, f . f, m . m, cosine, f_object, m_object), all as in ``wrench_dynamics``, and force and moment (6,)
+    that the ground exerts on all that moves, the grasps' reactions included: about the base's origin, in its axes.
     """
     import casadi as ca
 
     cpin, model, entries = symbolic_model(topology)
-    knot = StandingKnot(cpin, model, topology.model, topology.frames, entries)
+    up = topology.up if topology.trunk else None
+    knot = StandingKnot(cpin, model, topology.model, topology.frames, entries, topology.trunk, up)
     y, p, m = knot.y, knot.p, knot.m
     slopes = knot.jacobian()
     leading = ca.SX.sym("slopes", slopes.sparsity())
-    rows, d = leading[: knot.n, :], ca.SX.sym("d", knot.n)
+    rows, d = leading[: knot.squared, :], ca.SX.sym("d", knot.squared)
     squares = ca.mtimes(rows.T, ca.repmat(d, 1, y.shape[0]) * rows)
     return KnotFunctions(
         value=ca.Function("value", [y, p], ca.cse([ca.densify(knot.value())])),

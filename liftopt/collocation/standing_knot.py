@@ -13,15 +13,16 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.collocation.dynamics import roll_pitch_yaw
-from liftopt.collocation.spatial_symbols import Force, Placed
+from liftopt.collocation.spatial_symbols import Force
+from liftopt.collocation.standing_place import PLACE_SIZE, base_of
 from liftopt.collocation.tree_dynamics import Tree
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
+from liftopt.types import Array
 
 # Of each hand: p_world_grasp, f . f, m . m, cosine, f_object, m_object; then the ground's force and moment.
 HAND_OUTPUTS, GROUND_OUTPUTS = 12, 6
 POINT, OWN, COSINE = slice(0, 3), slice(3, 12), 5
-# Parameters after those of the model: x, y, z, cosine and sine of the heading of the base, then nine of each grip.
-PLACE_SIZE, GRIP_SIZE = 5, 9
+GRIP_SIZE = 9  # parameters of each hand, after those of the model and of the place
 
 
 @dataclass(frozen=True)
@@ -62,10 +63,13 @@ class StandingKnot:
 
     Attributes:
         y, p, m: knot variables, parameters (the period first), weights of the outputs; see ``standing_dynamics``.
-        n: number of joints.
+        n: number of joints; ``squared`` that of the leading outputs that may enter an objective squared.
     """
 
-    def __init__(self, cpin: Any, model: Any, structure: pin.Model, frames: tuple[str, ...], entries: Any) -> None:
+    def __init__(
+        self, cpin: Any, model: Any, structure: pin.Model, frames: tuple[str, ...], entries: Any,
+        trunk: int = 0, up: Array | None = None,
+    ) -> None:  # fmt: skip
         """Set the knot up.
 
         Args:
@@ -74,29 +78,32 @@ class StandingKnot:
             structure: the same model in numbers, of which only the structure counts.
             frames: of the hands.
             entries: symbols of the model's entries, the place and the grips.
+            trunk: joint whose link's lean is an output, 0 for none.
+            up: (3,) direction in that link that is up where it does not lean.
         """
         import casadi as ca
 
         self.n, self.structure, hands = int(structure.nv), structure, len(frames)
+        self.squared = self.n + (trunk > 0)
         period = ca.SX.sym("T")
         q, dq, ddq = (ca.SX.sym(name, self.n) for name in ("q", "dq", "ddq"))
         self.held, self.angles = ca.SX.sym("f", WRENCH_SIZE * hands), ca.SX.sym("r", 3)
         self.y, self.p = ca.vertcat(q, dq, ddq, self.held, self.angles), ca.vertcat(period, entries)
-        self.ground = self.n + HAND_OUTPUTS * hands
+        self.ground = self.squared + HAND_OUTPUTS * hands
         self.m = ca.SX.sym("m", self.ground + GROUND_OUTPUTS)
-        sizes = np.cumsum([0, self.n, *[HAND_OUTPUTS] * hands, 3, 3])
-        torques, *self.weights, force, moment = ca.vertsplit(self.m, sizes.tolist())
+        sizes = np.cumsum([0, self.n, self.squared - self.n, *[HAND_OUTPUTS] * hands, 3, 3])
+        torques, leaning, *self.weights, force, moment = ca.vertsplit(self.m, sizes.tolist())
         # Rates are by the phase: masses over T^2 and gravity times T^2 come to the same.
         for j in range(1, structure.njoints):
             body = model.inertias[j]
             model.inertias[j] = cpin.Inertia(body.mass / period**2, body.lever, body.inertia / period**2)
         model.gravity = cpin.Motion(model.gravity.linear * period**2, model.gravity.angular)
         self.tree = Tree(cpin, model, structure, (q, dq, ddq), (torques, force, moment))
+        self.lean = ca.SX(0, 1) if up is None else 1 - self._to_base(ca.mtimes(self.tree.placed[trunk].rotation, up))[2]
+        self.leaning = ca.dot(leaning, self.lean)  # its share of the weighted sum
 
         place, grips = entries[-PLACE_SIZE - GRIP_SIZE * hands :][:PLACE_SIZE], entries[-GRIP_SIZE * hands :]
-        cosine, sine = place[3], place[4]
-        turned = ca.vertcat(ca.horzcat(cosine, -sine, 0), ca.horzcat(sine, cosine, 0), ca.horzcat(0, 0, 1))
-        self.base = Placed(turned, place[:3])
+        self.base = base_of(place)
         self.attitude, _ = roll_pitch_yaw(ca, self.angles)
         turns = [ca.reshape(grip, 3, 3).T for grip in ca.vertsplit(grips, GRIP_SIZE)]
         found = [structure.getFrameId(name) for name in frames]
@@ -117,7 +124,7 @@ class StandingKnot:
         for i, hand in enumerate(self.hands):
             ground += Force(hand.moment + ca.cross(hand.point, hand.force), hand.force)
             outputs += [self.base.origin + self._to_world(hand.point - tree.placed[0].origin), self._own(i)]
-        return ca.vertcat(*torques, *outputs, self._at_base(ground))
+        return ca.vertcat(*torques, self.lean, *outputs, self._at_base(ground))
 
     def gradient(self) -> Any:
         """Return the slopes of the weighted sum of the outputs."""
@@ -138,6 +145,8 @@ class StandingKnot:
                 moment, self._to_world(whole.angular)
             )
             others += ca.dot(self.weights[i][OWN], self._own(i))
+        if self.squared > self.n:
+            found[: self.n] += ca.gradient(self.leaning, self.y[: self.n])
         return ca.vertcat(found, ca.gradient(others, ca.vertcat(self.held, self.angles)))
 
     def jacobian(self) -> Any:
@@ -164,6 +173,8 @@ class StandingKnot:
                     found[above, order * n + own] = axis.dot(column)
             for order, column in enumerate(columns):
                 found[self.ground :, order * n + own] = self._at_base(column)
+        if self.squared > n:
+            found[n, :n] = ca.jacobian(self.lean, self.y[:n])
         for i in range(len(self.hands)):
             self._add_hand_slopes(found, i)
         return ca.sparsify(found)
@@ -171,7 +182,7 @@ class StandingKnot:
     def _add_hand_slopes(self, found: Any, i: int) -> None:
         import casadi as ca
 
-        hand, first, force = self.hands[i], self.n + HAND_OUTPUTS * i, self._force(i)
+        hand, first, force = self.hands[i], self.squared + HAND_OUTPUTS * i, self._force(i)
         turn = hand.turn(hand.aim)
         for j in self.tree.path(hand.joint):
             own, reach = self._at(j), self._to_world(hand.reach[j])
@@ -217,6 +228,8 @@ class StandingKnot:
                 found[own, force : force + 3] = self._to_world(hand.swing[j]).T
                 found[own, force + 3 : force + 6] = self._to_world(hand.tilt[j]).T
                 found[own, angles:] += ca.mtimes(tree.axis[j].angular.T, turns)
+        if self.squared > n:
+            found[:n, :n] += ca.hessian(self.leaning, self.y[:n])[0]
         found[3 * n :, 3 * n :] = ca.hessian(others, ca.vertcat(self.held, self.angles))[0]
         return ca.triu(ca.sparsify(found))
 

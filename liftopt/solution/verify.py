@@ -17,6 +17,7 @@ from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.leaning import trunk_tilt
 from liftopt.multibody.solid_pairs import solid_pairs
 from liftopt.multibody.solids import Solid
 from liftopt.multibody.standing import ground_in_base
@@ -124,6 +125,9 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
     checks += _holds(motion, limit)
     for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):
         checks += _soles(model, trajectory, limit, motion.time)
+        if model.lean is not None:
+            beyond = np.cos(model.lean.most) - 1.0 + trunk_tilt(model, trajectory.q)
+            checks.append(_worst("lean of the trunk", beyond[:, None], limit, "1 - cos", [model.name], motion.time))
     # np.maximum lets a NaN through where max would hide it.
     return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
 

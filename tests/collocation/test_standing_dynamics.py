@@ -24,6 +24,7 @@ PERIOD = 1.3
 PLACE = Placement(0.4, -0.3, 0.8)
 GRIPS = tuple(pin.exp3(np.array(turn)) for turn in ([0.4, -1.1, 0.7], [-0.2, 0.5, 1.9]))
 KINDS = ("person", "tree", "two roots", "chain")
+TRUNKS = {"person": "human_Q3", "tree": "joint4"}
 Built = tuple[pin.Model, StandingTopology, KnotFunctions]
 
 
@@ -66,11 +67,12 @@ def built(request: pytest.FixtureRequest) -> Built:
     model = model_of(request.param)
     hands = tuple(frame.name for frame in model.frames if frame.name.startswith("hand") or "grasp" in frame.name)
     hands = tuple(dict.fromkeys(name.removesuffix("_fixed") for name in hands))
-    topology = StandingTopology.standing(model, hands, PLACE.T_world_base, *GRIPS[: len(hands)])
+    trunk = TRUNKS.get(request.param, "")
+    topology = StandingTopology.standing(model, hands, PLACE.T_world_base, *GRIPS[: len(hands)], trunk=trunk)
     return model, topology, standing_agent_functions(topology)
 
 
-def expected(model: pin.Model, hands: tuple[str, ...], y: np.ndarray) -> np.ndarray:
+def expected(model: pin.Model, topology: StandingTopology, y: np.ndarray) -> np.ndarray:
     """Return the outputs by Pinocchio's RNEA, the force of its first joints, and whole frame Jacobians."""
     n, data = model.nv, model.createData()
     q, v, a, angles = y[:n], y[n : 2 * n] / PERIOD, y[2 * n : 3 * n] / PERIOD**2, y[-3:]
@@ -80,7 +82,7 @@ def expected(model: pin.Model, hands: tuple[str, ...], y: np.ndarray) -> np.ndar
     ground = sum((data.oMi[j].act(data.f[j]) for j in roots), pin.Force.Zero())
     attitude = np.linalg.multi_dot([pin.utils.rotate(axis, angle) for axis, angle in zip("xyz", angles, strict=True)])
     outputs = []
-    for name, grip, wrench in zip(hands, GRIPS, y[3 * n : -3].reshape(-1, 6), strict=False):
+    for name, grip, wrench in zip(topology.frames, GRIPS, y[3 * n : -3].reshape(-1, 6), strict=False):
         frame, (f, m) = model.getFrameId(name), np.split(wrench, 2)
         tau += pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED).T @ wrench
         pin.framesForwardKinematics(model, data, q)
@@ -88,7 +90,12 @@ def expected(model: pin.Model, hands: tuple[str, ...], y: np.ndarray) -> np.ndar
         tilt = np.linalg.norm(pin.log3(attitude.T @ hand.rotation @ grip))
         ground += pin.SE3(np.eye(3), hand.translation).act(pin.Force(wrench))
         outputs.append([*hand.translation, f @ f, m @ m, np.cos(tilt), *attitude.T @ f, *attitude.T @ m])
-    return np.concatenate([tau, *outputs, pin.SE3(PLACE.T_world_base).actInv(ground).vector])
+    lean = []
+    if topology.trunk:
+        there, upright = data.oMi[topology.trunk].rotation.copy(), model.createData()
+        pin.forwardKinematics(model, upright, pin.neutral(model))
+        lean = [1.0 - float(there[2] @ upright.oMi[topology.trunk].rotation[2])]
+    return np.concatenate([tau, lean, *outputs, pin.SE3(PLACE.T_world_base).actInv(ground).vector])
 
 
 def differences(function: Callable[[np.ndarray], np.ndarray], y: np.ndarray, h: float = 1e-2) -> np.ndarray:
@@ -109,14 +116,14 @@ def test_values_are_pinocchios(built: Built, rng: np.random.Generator) -> None:
     for _ in range(5):
         y = sample(functions, rng)
         c = functions.value(y, np.r_[PERIOD, topology.parameters]).full().ravel()
-        whole = expected(model, topology.frames, y)
+        whole = expected(model, topology, y)
         np.testing.assert_allclose(c, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
 
 
 def test_jacobian_by_finite_differences_of_pinocchio(built: Built, rng: np.random.Generator) -> None:
     model, topology, functions = built
     y = sample(functions, rng)
-    numeric = differences(lambda at: expected(model, topology.frames, at), y)
+    numeric = differences(lambda at: expected(model, topology, at), y)
     actual = functions.jacobian(y, np.r_[PERIOD, topology.parameters]).full()
     np.testing.assert_allclose(actual, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
@@ -140,10 +147,11 @@ def test_gradient_and_curvature_are_derivatives_of_the_jacobian(built: Built, rn
 
 
 def test_squares_are_the_gauss_newton_term(built: Built, rng: np.random.Generator) -> None:
-    """NumPy: sum_j d_j c_j' c_j'^T over the torques alone."""
+    """NumPy: sum_j d_j c_j' c_j'^T over the torques, and the lean of a trunk."""
     model, topology, functions = built
     jacobian = functions.jacobian(sample(functions, rng), np.r_[PERIOD, topology.parameters])
-    d, leading = rng.normal(size=model.nv), jacobian.full()[: model.nv]
+    squared = model.nv + bool(topology.trunk)
+    d, leading = rng.normal(size=squared), jacobian.full()[:squared]
     whole = np.triu(leading.T @ (d[:, None] * leading))
     np.testing.assert_allclose(
         ca.DM(functions.squares(jacobian, d)).full(), whole, rtol=0, atol=1e-12 * np.abs(whole).max()

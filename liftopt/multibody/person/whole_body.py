@@ -16,7 +16,7 @@ from liftopt.multibody.agent import Agent, Grasp, HalfSpace
 from liftopt.multibody.dh import BodyInertia, frame_transforms
 from liftopt.multibody.person.anthropometry import landmarks
 from liftopt.multibody.person.bodies import whole_bodies
-from liftopt.multibody.person.comfort import whole_comfort
+from liftopt.multibody.person.comfort import human_lean, whole_comfort
 from liftopt.multibody.person.human import NAME, ORIGIN, POSTURE_DEG, human_chain, human_root, joint_bounds
 from liftopt.multibody.person.human_shapes import whole_shapes
 from liftopt.multibody.person.lumbar_levers import spine_shares
@@ -95,6 +95,7 @@ def whole_human_agent(
         comfort=whole_comfort(),
         spine=spine_shares(JOINTS),
         stance=human_stance(subject),
+        lean=human_lean(joint_name(name, TRUNK[-1])),
     )
 
 
