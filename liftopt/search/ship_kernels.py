@@ -14,13 +14,13 @@ import os
 import platform
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import get_args
 
 from liftopt.collocation.codegen.kernels import Builder, load_kernels
 from liftopt.collocation.codegen.simd_kernels import PROCESSORS, load_simd_kernels
 from liftopt.collocation.dynamics import Topology
 from liftopt.collocation.problem import Team, kernel_requests
+from liftopt.multibody.table import lifted_table
 from liftopt.scenario.agents import GRASPS
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
@@ -53,9 +53,11 @@ def _requests() -> Iterator[list[Request]]:
         yield _of_team(f"human.grasp={grasp}", f"robot.grasp={grasp}")
     yield _of_team("human.body=whole")
     scenario = load_scenario(changes=["human.body=whole"])
-    agents, lifted = agents_of(scenario), object_of(scenario)
+    agents = agents_of(scenario)
     for count in range(1, MOST_GRASPS + 1):
-        held = replace(lifted, grasp_frames=(lifted.grasp_frames[0],) * count)
+        # Each grasp needs a frame of its own; where it is does not matter, as long as no coordinate is nothing.
+        points = {f"hand{i}": (0.1 + i, 0.1, 0.1) for i in range(count)}
+        held = lifted_table(mass=1.0, depth=0.5, width=0.5, height=0.1, grasps=points)
         yield kernel_requests(agents, held)[-1:]
 
 
