@@ -40,14 +40,14 @@ def ship(folder: str, every_processor: bool = False) -> bool:
     os.environ["LIFTOPT_CACHE"] = folder
     processors = PROCESSORS if every_processor and platform.machine() == "x86_64" else (None,)
     whole = True
-    for requests in _requests():
+    for requests in shipped_requests():
         whole = all(kernel.compiled for kernel in load_kernels(requests, _print)) and whole
         for extensions in processors:
             whole = load_simd_kernels(requests, _print, extensions) is not None and whole
     return whole
 
 
-def _requests() -> Iterator[list[Request]]:
+def shipped_requests() -> Iterator[list[Request]]:
     """Give what to generate kernels from, a team at a time: of one arm each, and of a whole body with an object."""
     for grasp in get_args(GRASPS):
         yield _of_team(f"human.grasp={grasp}", f"robot.grasp={grasp}")
@@ -55,9 +55,9 @@ def _requests() -> Iterator[list[Request]]:
     scenario = load_scenario(changes=["human.body=whole"])
     agents = agents_of(scenario)
     for count in range(1, MOST_GRASPS + 1):
-        # Each grasp needs a frame of its own; where it is does not matter, as long as no coordinate is nothing.
-        points = {f"hand{i}": (0.1 + i, 0.1, 0.1) for i in range(count)}
-        held = lifted_table(mass=1.0, depth=0.5, width=0.5, height=0.1, grasps=points)
+        # Each grasp has a frame of its own: one frame in two places would give both the same place in the kernel.
+        points = {f"hand_{n}": (0.0, 0.0, 0.0) for n in range(count)}
+        held = lifted_table(mass=1.0, depth=0.3, width=0.4, height=0.2, grasps=points)
         yield kernel_requests(agents, held)[-1:]
 
 
