@@ -93,7 +93,8 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
 def team_solution(solved: Callable[..., Solved]) -> Callable[[str], Any]:
     """Return a function that gives a lift and its models by other teams, made without a solver.
 
-    They are ``"two_people"``, anna and ben, and ``"two_robots"``, a human with the Sawyers near and far.
+    They are ``"two_people"``, anna and ben, ``"two_robots"``, a human with the Sawyers near and far, ``"squat"``, a
+    human with legs, and ``"two_whole"``, anna and ben with legs.
     """
     module, pattern = _module("teams"), solved("table5", "solver.intervals=10", "solver.starts=1").solution
     return cache(lambda name: module.made(name, pattern))

@@ -77,7 +77,7 @@ def two_handed(
         model=model,
         locked_joints=(),
         grasps=tuple(
-            Grasp(f"{name}_{side}", frames[side], moments, 8.0 if moments else 0.0, 1.5, LOOK_AHEAD) for side in hands
+            Grasp(f"{name}_{side}", frames[side], moments, 15.0 if moments else 0.0, 1.5, LOOK_AHEAD) for side in hands
         ),
         hands=tuple(frames.values()),
         limits=JointLimits(-2.6 * ones, 2.6 * ones, 6.0 * ones, -150.0 * ones, 200.0 * ones),

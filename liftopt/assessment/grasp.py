@@ -27,6 +27,7 @@ def cap_findings(fine: Solution, agent: AgentTrajectory, who: Who) -> Iterator[F
         size = np.linalg.norm(vectors, axis=1)
         k, at = int(np.argmax(size)), size >= (1 - AT_LIMIT) * cap
         whose = f"The {hand}'s {what}" if who.is_alone else f"The {what} of {who.name}'s {hand}"
+        title = f"grasp {what}" if len(agent.grasps) == 1 else f"{what} of the {hand}"
         text = f"{whose} is {size[k]:.3g} {unit} at most, at {fine.time[k]:.2f} s"
         if at.any():
             text += (
@@ -36,7 +37,7 @@ def cap_findings(fine: Solution, agent: AgentTrajectory, who: Who) -> Iterator[F
         yield Finding(
             f"{who.subject}.grasp_{what}",
             WARNING if size[k] > (1 + AT_LIMIT) * cap else CAUTION if at.any() else INFO,
-            f"grasp {what} at its cap" if at.any() else f"grasp {what} up to {size[k]:.3g} {unit}",
+            f"{title} at its cap" if at.any() else f"{title} up to {size[k]:.3g} {unit}",
             f"{text}.",
             agent.name, None, float(fine.time[k]), float(size[k]), float(cap), unit, f"{key} of the scenario",
         )  # fmt: skip

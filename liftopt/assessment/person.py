@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
 from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
 from liftopt.assessment.posture import PARTS, posture_finding, style_findings
+from liftopt.assessment.standing import standing_findings
 from liftopt.assessment.who import Who
 from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measure import Measure
@@ -29,6 +30,7 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
     yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:
         yield posture_finding(who, ergonomics, measure) if measure.code in PARTS else _guide(who, measure)
+    yield from standing_findings(fine, person, who)
     yield from style_findings(who, ergonomics, float(person.p_world_hold[0, 2]))
     if fine.object.grasp_position.shape[1] > 1:
         yield squeeze_finding(fine, person)

@@ -93,7 +93,5 @@ def _recorded(ergonomics: Ergonomics, start: LiftingStyle, height: float) -> str
 
 
 def _stance(style: LiftingStyle) -> str:
-    return (
-        f"knees {style.knee:.0f}, hips {style.hip:.0f}, trunk {style.inclination:.0f} deg from the vertical (postural "
-        f"index {style.index:.2f})"
-    )
+    angles = f"knees {style.knee:.0f}, hips {style.hip:.0f}, trunk {style.inclination:.0f} deg from the vertical"
+    return angles if style.style == "upright" else f"{angles} (postural index {style.index:.2f})"

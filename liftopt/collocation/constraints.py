@@ -35,7 +35,7 @@ class Block:
 
     Attributes:
         name: ``"grasp_closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
-            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"sole_friction"``, ``"sole_pressure"``,
+            ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"sole_friction"``, ``"sole_pressure"``, ``"lean"``,
             ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
         who: agent, grasp or object; of clearance, the two bodies by number.
         rows: where in g.
@@ -182,6 +182,7 @@ def build_constraints(
                 _moment(rows, i, own, grasp)
             _flat_hand(rows, i, own, grasp)
         _soles(rows, i, own, agent)
+        _lean(rows, i, own, agent)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
     _balance(rows, len(agents), lifted, served_rows(agents, lifted, task.balance_tolerance), task.balance_tolerance)
     _velocity(rows, len(agents), lifted.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
@@ -248,6 +249,14 @@ def _flat_hand(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp) -> None:
         rows.add(rows.outputs_at(i, rows.knots, first + flat.components), flat.signs)
         rows.add(rows.outputs_at(i, rows.knots, np.full(m, first + PUSH)), flat.shares)
         rows.close(flat.name, grasp.name, flat.labels, np.zeros(m), np.full(m, np.inf), len(rows.knots))
+
+
+def _lean(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:
+    """The trunk leans no farther than it may, by 1 - cos of its angle."""
+    if agent.lean is not None:
+        rows.add(rows.outputs_at(i, rows.knots, own.lean), 1.0)
+        most = np.array([1.0 - np.cos(agent.lean.most)])
+        rows.close("lean", agent.name, ("trunk",), np.array([-np.inf]), most, len(rows.knots))
 
 
 def _soles(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:

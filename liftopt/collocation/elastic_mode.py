@@ -226,6 +226,10 @@ class SoftProblem(Problem):
         elif block.name == FRICTION:
             who, unit = [f"{block.who} {label}" for label in block.labels], "N"
             amounts = amounts * weight_of(self.team.agents[names.index(block.who)])
+        elif block.name == "lean":
+            who, unit = [f"{block.who} {label}" for label in block.labels], "deg"
+            most = np.arccos(1.0 - block.upper[0])
+            amounts = np.degrees(np.arccos(np.clip(np.cos(most) - amounts, -1.0, 1.0)) - most)
         elif block.name == PRESSURE:
             who = [f"{block.who} {label}" for label in block.labels]
         elif block.name == "velocity":

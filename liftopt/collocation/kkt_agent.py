@@ -9,6 +9,7 @@ from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.outputs import AgentOutputs, outputs_of
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.standing import rooted
 from liftopt.multibody.trajectory import attitude, bearing, cross, mirrored, turned
 from liftopt.types import Array
 
@@ -44,6 +45,8 @@ def agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
         jacobian[k, :n, :n], jacobian[k, :n, n : 2 * n], mass_matrix[k] = by_state
     jacobian[:, :n, n : 2 * n] /= period
     jacobian[:, :n, 2 * n : 3 * n] = mirrored(mass_matrix) / period**2
+    if own.leans:
+        outputs[:, own.lean], jacobian[:, own.lean, :n] = _lean(agent, model, q, slopes)
     if own.stands:
         outputs[:, own.ground], jacobian[:, own.ground, : 3 * n] = _bare_ground(agent, model, q, v, a, period)
     room = FORCE_SIZE if agent.pushes_at_a_point else WRENCH_SIZE
@@ -108,29 +111,36 @@ def _add_moment(
         first += 3
 
 
-def _bare_ground(agent: Agent, model: pin.Model, q: Array, v: Array, a: Array, period: float) -> tuple[Array, Array]:
-    """Return what the ground exerts on all that moves (K, 6) without the grasps, and its slopes (K, 6, 3 n).
+def _lean(agent: Agent, model: pin.Model, q: Array, slopes: Array) -> tuple[Array, Array]:
+    """Return 1 - cos of the trunk's angle from the vertical (K, 1), and its slopes (K, 1, n)."""
+    assert agent.lean is not None
+    trunk, data = model.getJointId(agent.lean.joint), model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    at_rest, up = data.oMi[trunk].rotation[2].copy(), np.zeros((len(q), 3))
+    for k in range(len(q)):
+        pin.forwardKinematics(model, data, q[k])
+        up[k] = data.oMi[trunk].rotation @ at_rest
+    turning = (slopes * bearing(model, trunk))[:, 3:].swapaxes(1, 2)
+    # A joint turns the trunk's axis about its own: d up / dq_j = w_j x up.
+    return 1.0 - up[:, 2:], -cross(turning, up[:, None])[:, None, :, 2]
 
-    It is what the root of the same tree on a free-flyer at the base would have to transmit: RNEA gives it in the axes
-    of the base, about its origin.
-    """
-    n, base = model.nv, pin.SE3(agent.T_world_base)
-    floating = pin.Model()
-    floating.gravity = model.gravity
-    root = floating.addJoint(0, pin.JointModelFreeFlyer(), base, "floating_base")
-    for j in range(1, model.njoints):
-        parent, placement = model.parents[j], model.jointPlacements[j]
-        placement = placement if parent else base.inverse() * placement
-        floating.addJoint(parent + root, model.joints[j], placement, model.names[j])
-        floating.appendBodyToJoint(j + root, model.inertias[j], pin.SE3.Identity())
-    data, still = floating.createData(), np.zeros(6)
+
+def _bare_ground(agent: Agent, model: pin.Model, q: Array, v: Array, a: Array, period: float) -> tuple[Array, Array]:
+    """Return what the ground exerts on all that moves (K, 6) without the grasps, and its slopes (K, 6, 3 n)."""
+    n, tree, still = model.nv, rooted(model, _base(agent)), np.zeros(6)
+    data = tree.createData()
     ground, slopes = np.zeros((len(q), 6)), np.zeros((len(q), 6, 3 * n))
     for k in range(len(q)):
         state = np.concatenate([still, [1.0], q[k]]), np.concatenate([still, v[k]]), np.concatenate([still, a[k]])
-        ground[k] = pin.rnea(floating, data, *state)[:6]
-        by_state = pin.computeRNEADerivatives(floating, data, *state)
+        ground[k] = pin.rnea(tree, data, *state)[:6]
+        by_state = pin.computeRNEADerivatives(tree, data, *state)
         slopes[k] = np.hstack([each[:6, 6:] / period**order for order, each in enumerate(by_state)])
     return ground, slopes
+
+
+def _base(agent: Agent) -> Array:
+    """Return the placement (4, 4) in whose axes the ground's outputs are: the world's of one that does not stand."""
+    return agent.T_world_base if agent.stance else np.eye(4)
 
 
 def _add_to_ground(
@@ -139,7 +149,7 @@ def _add_to_ground(
 ) -> None:  # fmt: skip
     """Add what holds a hand's reaction to the ground's force and moment."""
     n, f, m, first = own.joints, y[:, force], y[:, moment], own.ground.start
-    to_base, lever = agent.T_world_base[:3, :3].T, point - agent.T_world_base[:3, 3]
+    to_base, lever = _base(agent)[:3, :3].T, point - _base(agent)[:3, 3]
     pull, twist = slice(first, first + 3), slice(first + 3, first + 6)
     outputs[:, pull] += f @ to_base.T
     outputs[:, twist] += (cross(lever, f) + m) @ to_base.T

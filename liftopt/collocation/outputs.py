@@ -25,12 +25,14 @@ class AgentOutputs:
         hands: all that the kernel has room for.
         of_a_hand: number of outputs of each.
         stands: whether the ground's force and moment come last.
+        leans: whether the trunk's lean comes after the torques.
     """
 
     joints: int
     hands: tuple[str, ...]
     of_a_hand: int
     stands: bool
+    leans: bool = False
 
     @property
     def has_moments(self) -> bool:
@@ -41,6 +43,11 @@ class AgentOutputs:
     def tau(self) -> slice:
         """Joint torques [Nm]."""
         return slice(0, self.joints)
+
+    @property
+    def lean(self) -> slice:
+        """1 - cos of the trunk's angle from the vertical; like the torques it may be squared in an objective."""
+        return slice(self.joints, self.joints + self.leans)
 
     def position(self, hand: str) -> slice:
         """Return where the grasp point in the world is [m]."""
@@ -65,7 +72,7 @@ class AgentOutputs:
     @property
     def ground(self) -> slice:
         """Force and moment of the ground on all that moves, about the feet's origin, axes of the base [N, Nm]."""
-        first = self.joints + len(self.hands) * self.of_a_hand
+        first = self.lean.stop + len(self.hands) * self.of_a_hand
         return slice(first, first + WRENCH_SIZE * self.stands)
 
     @property
@@ -74,11 +81,12 @@ class AgentOutputs:
         return int(self.ground.stop)
 
     def _part(self, hand: str, at: int, size: int) -> slice:
-        first = self.joints + self.hands.index(hand) * self.of_a_hand + at
+        first = self.lean.stop + self.hands.index(hand) * self.of_a_hand + at
         return slice(first, first + size)
 
 
 def outputs_of(agent: Agent) -> AgentOutputs:
     """Return where the outputs of an agent's kernel are."""
     of_a_hand = AT_A_POINT if agent.pushes_at_a_point else WITH_MOMENT
-    return AgentOutputs(len(agent.posture), agent.hands, of_a_hand, not agent.is_simple)
+    leans = not agent.is_simple and agent.lean is not None
+    return AgentOutputs(len(agent.posture), agent.hands, of_a_hand, not agent.is_simple, leans)

@@ -23,7 +23,7 @@ _PAIR = np.array([-1.0, 1.0])
 
 def sole_rows(stance: Stance) -> tuple[PushRows, PushRows]:
     """Return the rows of all that the ground does, friction [N] and pressure [Nm]; labels say where the feet slip."""
-    back, ahead, aside = support(stance)
+    back, ahead, aside = stance.support
     pyramid = np.full(4, stance.friction / np.sqrt(2.0))
     turn = 2.0 / 3.0 * stance.friction * aside
     return (
@@ -36,12 +36,6 @@ def sole_rows(stance: Stance) -> tuple[PushRows, PushRows]:
             np.array([-back, ahead, aside, aside, turn, turn]),
         ),
     )
-
-
-def support(stance: Stance) -> tuple[float, float, float]:
-    """Return the rectangle around both soles: where it begins and ends along X, and how far it reaches along Y [m]."""
-    back, ahead, aside = zip(*stance.soles, strict=True)
-    return min(back), max(ahead), max(aside)
 
 
 def resting(stance: Stance) -> Array:

@@ -83,10 +83,11 @@ class Niosh:
     @property
     def out_of_scope(self) -> tuple[str, ...]:
         """Why the equation does not apply, so that it is an indication only; nothing where it does."""
+        moves = "hand moves" if self.hands == 1 else "hands move"
         why = {
             "it is not for one-handed lifts": self.hands == 1,
             "it is not for a load that is shared: the person's part of it stands for the load here": self.is_shared,
-            f"the hand moves at up to {self.hand_speed:.2f} m/s, above {FASTEST:g} m/s": self.hand_speed > FASTEST,
+            f"the {moves} at up to {self.hand_speed:.2f} m/s, above {FASTEST:g} m/s": self.hand_speed > FASTEST,
         }
         return tuple(words for words, holds in why.items() if holds)
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from liftopt.ergonomics.lift import Lift, R_world_person, model_of
-from liftopt.ergonomics.limbs import Arm, arms_of, hand_force, joint_angle
+from liftopt.ergonomics.lift import Lift, R_world_person, model_of, subject_in
+from liftopt.ergonomics.limbs import Arm, arms_of, hand_force, has_legs, joint_angle
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.person.anthropometry import feet_apart
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
 from liftopt.types import Array
 
@@ -51,6 +52,7 @@ class Posture:
 
     Attributes:
         ankle, knee, hip: flexion from upright stance, of both legs.
+        heavier_foot: share of the weight on the foot that bears more of it; half where the legs do not move.
         trunk_flexion, trunk_bend, trunk_turn: against the pelvis: forward, to the right, to the left.
         trunk_inclination: of the trunk against the vertical, forward, whatever bends: hip, trunk or both.
         load: magnitude of the force on both hands together [kg], that is N / 9.81 m/s^2.
@@ -60,6 +62,7 @@ class Posture:
     ankle: Array
     knee: Array
     hip: Array
+    heavier_foot: Array
     trunk_flexion: Array
     trunk_bend: Array
     trunk_turn: Array
@@ -74,16 +77,18 @@ class Posture:
 
 def posture_of(lift: Lift, person: AgentTrajectory) -> Posture:
     """Return the posture of a person at every time of a lift."""
-    return posture_by(model_of(lift, person.name), person, R_world_person(lift, person.name))
+    apart = feet_apart(subject_in(lift, person.name))
+    return posture_by(model_of(lift, person.name), person, R_world_person(lift, person.name), apart)
 
 
-def posture_by(agent: Agent, person: AgentTrajectory, upright: Array) -> Posture:
+def posture_by(agent: Agent, person: AgentTrajectory, upright: Array, apart: float) -> Posture:
     """Return the posture of a person at K times.
 
     Args:
         agent: the person's model.
         person: its motion and forces.
         upright: (3, 3) forward, left and up in the world where the person stands upright.
+        apart: distance between the middles of the feet [m].
     """
     arms = arms_of(person)
     points, up = _placed(agent, upright, person.q, arms)
@@ -91,6 +96,7 @@ def posture_by(agent: Agent, person: AgentTrajectory, upright: Array) -> Posture
         ankle=joint_angle(person, "ankle"),
         knee=joint_angle(person, "knee"),
         hip=joint_angle(person, "hip"),
+        heavier_foot=_heavier_foot(person, upright, apart),
         trunk_flexion=joint_angle(person, "Q2"),
         trunk_bend=joint_angle(person, "Q1"),
         trunk_turn=joint_angle(person, "Q3"),
@@ -99,6 +105,14 @@ def posture_by(agent: Agent, person: AgentTrajectory, upright: Array) -> Posture
         load=np.linalg.norm(person.load, axis=1) / GRAVITY,
         arms=tuple(_arm(agent, person, arm, *points[arm]) for arm in arms),
     )
+
+
+def _heavier_foot(person: AgentTrajectory, upright: Array, apart: float) -> Array:
+    """Return the share (K,) of the weight on the foot that bears more: how far aside the centre of pressure is."""
+    if not has_legs(person):
+        return np.full(len(person.q), 0.5)
+    to_the_left = (person.ground_moment @ upright)[:, 0] / person.ground_force[:, 2]
+    return np.asarray(0.5 + np.abs(to_the_left) / apart)
 
 
 def _arm(agent: Agent, person: AgentTrajectory, arm: Arm, shoulder: Array, elbow: Array, wrist: Array) -> ArmPosture:

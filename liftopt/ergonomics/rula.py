@@ -18,6 +18,7 @@ NEUTRAL = 5.0  # deg; less is taken for "neutral", "erect", "not bent from the m
 TURNED = 10.0  # deg; a trunk turned or bent sideways by more counts as such
 ABDUCTED = 20.0  # deg out of the sagittal plane
 TWISTED = 45.0  # deg from the middle of forearm rotation; more is "near the end of the range"
+UNEVEN = 2.0 / 3.0  # share of the weight on one foot; more is not "evenly balanced"
 OUT_TO_THE_SIDE = 0.05  # m from the shoulder joint to the side of the body
 
 ASSUMPTIONS = (
@@ -30,7 +31,8 @@ ASSUMPTIONS = (
     f"{100 * OUT_TO_THE_SIDE:g} cm outside the shoulder joint.",
     f"The forearm is near the end of its range beyond {TWISTED:g}° from the middle of pronation and supination.",
     "The model has no neck: the head is scored as neutral (1), though a person watching the object bends it. Legs: "
-    "standing evenly on both feet (1). How far the trunk is bent counts against the vertical, whatever bends it.",
+    f"standing evenly on both feet (1), or one foot bears more than {100 * UNEVEN:.0f} % of the weight (2). How far "
+    "the trunk is bent counts against the vertical, whatever bends it.",
     "Force: magnitude of the hand force as a mass, intermittent: 0 below 2 kg, 1 up to 10 kg, 2 above. Muscle use: one "
     "lift, neither held over a minute nor repeated over four times a minute (0); a repeated lift adds 1 to both parts, "
     "and 1 more for a force of 2 kg or more.",
@@ -85,10 +87,11 @@ def _side(posture: Posture, arm: ArmPosture) -> Rula:
     trunk = trunk + (np.abs(posture.trunk_turn) > TURNED) + (np.abs(posture.trunk_bend) > TURNED)
     load = arm.hand_load
     force = np.where(load < 2.0, 0, np.where(load <= 10.0, 1, 2))
+    legs = np.where(posture.heavier_foot > UNEVEN, 2, 1)
     of_arm = TABLE_A[upper_arm - 1, lower_arm - 1, wrist - 1, twist - 1] + force
-    of_body = TABLE_B[one - 1, trunk - 1, one - 1] + force
+    of_body = TABLE_B[one - 1, trunk - 1, legs - 1] + force
     grand = TABLE_C[np.minimum(of_arm, 8) - 1, np.minimum(of_body, 7) - 1]
-    return Rula(arm.side, grand, upper_arm, lower_arm, wrist, twist, one, trunk, one, force, of_arm, of_body)
+    return Rula(arm.side, grand, upper_arm, lower_arm, wrist, twist, one, trunk, legs, force, of_arm, of_body)
 
 
 def _upper_arm(arm: ArmPosture) -> Scores:

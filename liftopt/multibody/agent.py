@@ -136,6 +136,34 @@ class Stance:
     mass: float
     p_base_com: Array
 
+    @property
+    def support(self) -> tuple[float, float, float]:
+        """Rectangle around both soles: where it begins and ends along X, and how far it reaches along Y [m]."""
+        back, ahead, aside = zip(*self.soles, strict=True)
+        return min(back), max(ahead), max(aside)
+
+
+@dataclass(frozen=True)
+class Lean:
+    """How far an agent's trunk may lean from the vertical.
+
+    Where it leans by an angle theta it costs ``((1 - cos theta) / (1 - cos room))^2``: nothing upright, about the
+    fourth power of the angle near it, one at the end of the room; as much as a joint there, see ``Comfort``.
+
+    Attributes:
+        joint: name of the joint that carries the trunk.
+        room: comfortable angle in any direction [rad].
+        most: largest angle [rad].
+    """
+
+    joint: str
+    room: float
+    most: float
+
+    def cost(self, tilt: Array) -> Array:
+        """Return what leaning costs, where ``tilt`` is 1 - cos theta of any shape."""
+        return np.asarray((tilt / (1.0 - np.cos(self.room))) ** 2)
+
 
 @dataclass(frozen=True)
 class Agent:
@@ -153,7 +181,10 @@ class Agent:
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
         workspace: half-space that its grasp points must stay in, or None.
         comfort: where its joints are at ease, or None for one who does not mind.
+        spine: (2, n) what one Nm of each joint's torque, below and above zero, adds to the load on its spine, as a
+            share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
+        lean: how far its trunk may lean, or None for one without a trunk that does.
     """
 
     name: str
@@ -167,7 +198,9 @@ class Agent:
     posture: Array
     workspace: HalfSpace | None = None
     comfort: Comfort | None = None
+    spine: Array | None = None
     stance: Stance | None = None
+    lean: Lean | None = None
 
     @property
     def is_simple(self) -> bool:

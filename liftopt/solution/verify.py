@@ -12,12 +12,16 @@ from liftopt.collocation.flat_hand import flat_hand_rows
 from liftopt.collocation.kkt import kkt_error
 from liftopt.collocation.motion import Motion, motion_at, objective_terms, objective_weights
 from liftopt.collocation.problem import Problem
+from liftopt.collocation.soles import sole_rows
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.multibody.agent import Agent
+from liftopt.multibody.leaning import trunk_tilt
 from liftopt.multibody.solid_pairs import solid_pairs
 from liftopt.multibody.solids import Solid
-from liftopt.multibody.trajectory import angle_between, attitude, grasps_of, turned
+from liftopt.multibody.standing import ground_in_base
+from liftopt.multibody.trajectory import AgentTrajectory, angle_between, attitude, grasps_of, turned
 from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, TOUCH, Check, Verification
 from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
@@ -119,6 +123,11 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
             names = [grasp.name for grasp in model.grasps]
             checks.append(_worst("grasp in front", short, limit, "m", names, motion.time))
     checks += _holds(motion, limit)
+    for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):
+        checks += _soles(model, trajectory, limit, motion.time)
+        if model.lean is not None:
+            beyond = np.cos(model.lean.most) - 1.0 + trunk_tilt(model, trajectory.q)
+            checks.append(_worst("lean of the trunk", beyond[:, None], limit, "1 - cos", [model.name], motion.time))
     # np.maximum lets a NaN through where max would hide it.
     return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
 
@@ -140,6 +149,19 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
             ways = [f"{grasp.name} {label}" for label in rows.labels]
             checks.append(_worst(f"{rows.name} of the hand", worst, limit, unit, ways, motion.time))
     return checks
+
+
+def _soles(model: Agent, trajectory: AgentTrajectory, limit: float, time: Array) -> list[Check]:
+    """Both feet of one who stands stay on the floor: friction, and the centre of pressure within the soles."""
+    if model.stance is None:
+        return []
+    ground, (friction, pressure) = ground_in_base(model, trajectory), sole_rows(model.stance)
+    bears = np.maximum(ground[:, [2]], 1.0)  # [N]: one who is in the air has no centre of pressure, and slips anyhow
+    names = ([f"{model.name} {label}" for label in rows.labels] for rows in (friction, pressure))
+    return [
+        _worst("friction of the soles", -friction.room(ground), limit, "N", next(names), time),
+        _worst("pressure under the soles", -pressure.room(ground) / bears, limit, "m", next(names), time),
+    ]
 
 
 def _clearance(problem: Problem, motion: Motion, obstacles: Sequence[Solid], clearance: float) -> Check:

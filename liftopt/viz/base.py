@@ -12,10 +12,12 @@ EXACT = 9  # decimals of a placement: a URDF's angles give quarter turns with an
 
 
 def base_of(agent: Agent) -> Array:
-    """Return T_world_base (4, 4) of a chain of Table 2 or 3: X ahead, Z up.
+    """Return T_world_base (4, 4) of one who stands, or of a chain of Table 2 or 3: X ahead, Z up.
 
     It is at the feet of a person, and at the base of a robot's arm, on its pedestal.
     """
+    if agent.stance is not None:
+        return np.asarray(np.round(agent.T_world_base, EXACT) + 0.0, dtype=np.float64)
     model = agent.model
     first = model.jointPlacements[1]
     # The first of the chain's joints slides ahead along its z axis; its x axis is up.

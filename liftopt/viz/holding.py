@@ -6,25 +6,29 @@ fingers and jaws only lean and bend as far as the object's faces ask them to.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from liftopt.multibody.dh import rotation_z
+from liftopt.multibody.edges import Hold
 from liftopt.multibody.person.anthropometry import link_lengths
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.robots.sawyer_description import JOINTS, described_frames
 from liftopt.types import Array
 from liftopt.viz.digits import Digit, closed_on, distance_to_box
 from liftopt.viz.scene_gripper import gripper_digits
-from liftopt.viz.scene_hand import PALM, T_person_palm, hand_digits, palm_tilt
+from liftopt.viz.scene_hand import FINGERS, PALM, T_person_palm, hand_digits, palm_tilt
 
+FLAT: tuple[Hold, ...] = ("bottom", "side")  # holds of a flat hand
 TILTS = 41  # of the palm that are tried
 TOUCHING = 1e-3  # [m]
 PALM_LOOKED_AT = (0.6, 0.8, 1.0)  # as shares of the way from wrist to knuckles
 
 
 def held_by_hand(
-    hand: str, subject: Subject, side: float, T_person_last: Array, T_world_last: Array, T_world_object: Array,
-    half: Array,
+    hand: str, subject: Subject, side: float, hold: Hold, T_person_last: Array, T_world_last: Array,
+    T_world_object: Array, half: Array,
 ) -> dict[str, Array]:  # fmt: skip
     """Return T_world_body (K, 4, 4) of palm and bones, by body.
 
@@ -32,6 +36,7 @@ def held_by_hand(
         hand: which one, ``"human_right"``; the bodies' names begin with it.
         subject: whose it is.
         side: ``RIGHT`` or ``LEFT``.
+        hold: how it holds: flat on a side or under the bottom, as a fist in a handle, around an edge else.
         T_person_last: (4, 4) the frame of the wrist's last joint at zero, in the axes of the person upright.
         T_world_last: (K, 4, 4) that frame over the lift.
         T_world_object: (K, 4, 4) of the object's centre.
@@ -40,7 +45,8 @@ def held_by_hand(
     straight = T_world_last @ (np.linalg.inv(T_person_last) @ T_person_palm(subject, side))
     T_object_world = np.asarray(np.linalg.inv(T_world_object))
     palm = straight @ _tilts(subject, T_object_world @ straight, half)
-    bones = closed_bones(hand, hand_digits(subject, side), palm, T_object_world, half)
+    digits = hand_digits(subject, side, flat=hold in FLAT)
+    bones = closed_bones(hand, digits, palm, T_object_world, half, FINGERS if hold == "handle" else ())
     return {f"{hand}_palm": palm, **bones}
 
 
@@ -66,12 +72,20 @@ def held_by_gripper(
 
 
 def closed_bones(
-    name: str, digits: tuple[Digit, ...], T_world_palm: Array, T_object_world: Array, half: Array
-) -> dict[str, Array]:
-    """Return T_world_bone (K, 4, 4) of all bones of digits that close on the object, ``<name>_index_1`` and so on."""
+    name: str, digits: tuple[Digit, ...], T_world_palm: Array, T_object_world: Array, half: Array,
+    inside: Sequence[str] = (),
+) -> dict[str, Array]:  # fmt: skip
+    """Return T_world_bone (K, 4, 4) of all bones of digits that close on the object, ``<name>_index_1`` and so on.
+
+    Digits named in ``inside`` reach into a handle: they close as far as they can.
+    """
     bones = {}
     for digit in digits:
-        frames = digit.frames(closed_on(digit, T_object_world @ T_world_palm, half))
+        if digit.name in inside:
+            angles = np.tile(digit.closed, (len(T_world_palm), 1))
+        else:
+            angles = closed_on(digit, T_object_world @ T_world_palm, half)
+        frames = digit.frames(angles)
         for j in range(len(digit.bones)):
             bones[f"{name}_{digit.name}_{j + 1}"] = T_world_palm @ frames[:, j]
     return bones

@@ -9,20 +9,19 @@ import pinocchio as pin
 from scipy.spatial.transform import Rotation
 
 from liftopt.ergonomics.lift import subject_in
-from liftopt.ergonomics.posture import TRUNK
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.agent import Agent, Grasp
 from liftopt.multibody.poses import joint_placements
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.build import agents_of
+from liftopt.scenario.grasps import placed_grasps
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.base import base_of
 from liftopt.viz.free_arm import hanging_arm
 from liftopt.viz.holding import held_by_gripper, held_by_hand
-from liftopt.viz.scene_hand import LEFT, RIGHT
-from liftopt.viz.scene_person import FREE_ARM
+from liftopt.viz.person_bodies import PersonBodies, bodies_between, half_way
 from liftopt.viz.who import robot_of
 
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
@@ -110,44 +109,76 @@ def playback_at(solution: Solution, time: Array) -> Playback:
         placements = _placements(agent, q)
         upright = {name: list_[0] for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()}
         bases[agent.name] = base_of(agent)
-        holding = _holding(solution, track, bases[agent.name], placements, upright, T_world_object)
-        arm = _free_arm(solution, track, bases[agent.name], placements, upright, T_world_object)
-        bodies |= {name: _track(list_) for name, list_ in (placements | holding | arm).items()}
+        moved = _Moved(track, bases[agent.name], placements, upright, T_world_object)
+        holding, drawn = _holding(solution, moved), _drawn(solution, moved)
+        moves = placements | holding | {name: list_ for name, (list_, _) in drawn.items()}
+        bodies |= {name: _track(list_) for name, list_ in moves.items()}
         for own, grasp in enumerate(agent.grasps):
             forces[grasp.name] = _force(agent.model, grasp, track.grasp_force[:, own], knots, time, q)
         zero |= upright | dict.fromkeys(holding, np.eye(4))
-        zero |= {name: upright[f"{agent.name}_{TRUNK}"] for name in arm}
-        joints[agent.name] = (*placements, *holding, *arm)
+        zero |= {name: bases[agent.name] @ at_zero for name, (_, at_zero) in drawn.items()}
+        joints[agent.name] = tuple(moves)
     bodies[lifted.name] = _track(T_world_object)
     zero[lifted.name] = np.eye(4)
     return Playback(time, bodies, forces, zero, joints, bases)
 
 
-def _holding(
-    solution: Solution, agent: AgentTrajectory, T_world_base: Array, placements: dict[str, Array],
-    upright: dict[str, Array], T_world_object: Array,
-) -> dict[str, Array]:  # fmt: skip
+@dataclass(frozen=True)
+class _Moved:
+    """An agent and where its joints are: T_world_joint by joint, over the lift (K, 4, 4) and at zero (4, 4)."""
+
+    agent: AgentTrajectory
+    T_world_base: Array
+    placements: dict[str, Array]
+    upright: dict[str, Array]
+    T_world_object: Array
+
+    def at_zero(self, joint: str) -> Array:
+        """Return a joint at zero (4, 4), in the base's axes."""
+        return np.asarray(np.linalg.inv(self.T_world_base) @ self.upright[joint])
+
+
+def _holding(solution: Solution, moved: _Moved) -> dict[str, Array]:
     """Return T_world_body (K, 4, 4) of what an agent holds with, by body."""
-    half, last = _half(solution), list(placements)[-1]
-    T_base_last = np.linalg.inv(T_world_base) @ upright[last]
-    if agent.kind == "person":
-        subject = subject_in(solution, agent.name)
-        return held_by_hand(f"{agent.name}_right", subject, RIGHT, T_base_last, placements[last], T_world_object, half)
-    length = robot_of(solution.scenario, agent).tool.length
-    return held_by_gripper(agent.name, length, T_base_last, placements[last], T_world_object, half)
+    agent, half = moved.agent, _half(solution)
+    if agent.kind == "robot":
+        length, last = robot_of(solution.scenario, agent).tool.length, list(moved.placements)[-1]
+        world = moved.placements[last]
+        return held_by_gripper(agent.name, length, moved.at_zero(last), world, moved.T_world_object, half)
+    subject, holds = subject_in(solution, agent.name), placed_grasps(solution.scenario)
+    kinds = {placed.name: placed.hold for placed in holds}
+    found: dict[str, Array] = {}
+    for arm in PersonBodies.of(agent).arms:
+        if arm.hand:
+            hold, world = kinds[agent.grasps[arm.grasp].name], moved.placements[arm.wrist]
+            zero = moved.at_zero(arm.wrist)
+            found |= held_by_hand(arm.hand, subject, arm.side, hold, zero, world, moved.T_world_object, half)
+    return found
 
 
-def _free_arm(
-    solution: Solution, agent: AgentTrajectory, T_world_base: Array, placements: dict[str, Array],
-    upright: dict[str, Array], T_world_object: Array,
-) -> dict[str, Array]:  # fmt: skip
-    """Return T_world_body (K, 4, 4) of a person's arm that holds nothing; nothing of a robot."""
-    if agent.kind != "person":
+def _drawn(solution: Solution, moved: _Moved) -> dict[str, tuple[Array, Array]]:
+    """Return T_world_body (K, 4, 4) and T_base_body (4, 4) at zero of what no joint of a person moves alone, by body.
+
+    A robot has nothing of the kind.
+    """
+    agent = moved.agent
+    if agent.kind == "robot":
         return {}
-    trunk, subject = f"{agent.name}_{TRUNK}", subject_in(solution, agent.name)
-    T_base_trunk, T_object_world = np.linalg.inv(T_world_base) @ upright[trunk], np.linalg.inv(T_world_object)
-    hanging = hanging_arm(subject, LEFT, T_base_trunk, placements[trunk], np.asarray(T_object_world), _half(solution))
-    return {f"{agent.name}_{FREE_ARM}": hanging}
+    bodies, subject = PersonBodies.of(agent), subject_in(solution, agent.name)
+    zero = {joint: moved.at_zero(joint) for joint in moved.placements}
+    found = {
+        name: (half_way(between, zero, moved.placements), between.T_base_joint)
+        for name, between in bodies_between(bodies, subject).items()
+    }
+    if bodies.feet not in zero:
+        found[bodies.feet] = np.tile(moved.T_world_base, (len(moved.T_world_object), 1, 1)), np.eye(4)
+    for arm in bodies.arms:
+        if not arm.moves:
+            T_base_trunk, T_world_trunk = zero[bodies.trunk], moved.placements[bodies.trunk]
+            T_object_world = np.asarray(np.linalg.inv(moved.T_world_object))
+            hanging = hanging_arm(subject, arm.side, T_base_trunk, T_world_trunk, T_object_world, _half(solution))
+            found[arm.upper] = hanging, T_base_trunk
+    return found
 
 
 def _half(solution: Solution) -> Array:

@@ -14,12 +14,12 @@ from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.obstacles import Obstacle
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
+from liftopt.viz.person_bodies import PersonBodies
 from liftopt.viz.playback import Playback
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
 from liftopt.viz.scene_clearance import line_commands, line_values, nearest_at
 from liftopt.viz.scene_commands import Command, clip, place, set_object
 from liftopt.viz.scene_gripper import gripper_parts
-from liftopt.viz.scene_hand import RIGHT
 from liftopt.viz.scene_mesh import Mesh, Ring, block, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
 from liftopt.viz.scene_person import SHIRT, hand_parts, person_parts
@@ -140,8 +140,10 @@ def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
     solution, world_base = cast.solution, cast.playback.bases[agent.name]
     if agent.kind == "person":
         subject = subject_in(solution, agent.name)
-        figure = [part.placed(world_base) for part in person_parts(agent.name, subject, _shirt(cast, agent))]
-        return figure + hand_parts(f"{agent.name}_right", subject, RIGHT)
+        bodies = PersonBodies.of(agent)
+        figure = [part.placed(world_base) for part in person_parts(bodies, subject, _shirt(cast, agent))]
+        hands = (hand_parts(arm.hand, subject, arm.side) for arm in bodies.arms if arm.hand)
+        return figure + [part for hand in hands for part in hand]
     if cast.sawyer is None:
         arm = sawyer_parts(agent.name, world_base)
     else:

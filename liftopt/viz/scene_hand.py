@@ -26,6 +26,7 @@ BONES = (0.50, 0.30, 0.24)  # of the middle finger, over the way from wrist to k
 FLESH = (0.0098, 0.0090, 0.0082, 0.0070)
 THUMB_BONES = (0.48, 0.38, 0.30)
 THUMB_FLESH = (0.0150, 0.0118, 0.0102, 0.0082)
+OUT, FLAT_THUMB = np.array([0.0, 0.0, 1.0]), (radians(10.0), radians(10.0))  # of the palm; how far a flat thumb bends
 # Of a hand that holds nothing.
 RELAXED, RELAXED_THUMB = np.radians([22.0, 28.0, 18.0]), np.radians([52.0, 28.0, 18.0])
 
@@ -35,8 +36,11 @@ def palm_tilt(subject: Subject) -> float:
     return asin(PALM / link_lengths(subject).l6)
 
 
-def hand_digits(subject: Subject, side: float) -> tuple[Digit, ...]:
-    """Return fingers and thumb in the palm's frame; ``side`` is ``LEFT`` or ``RIGHT``."""
+def hand_digits(subject: Subject, side: float, *, flat: bool = False) -> tuple[Digit, ...]:
+    """Return fingers and thumb in the palm's frame; ``side`` is ``LEFT`` or ``RIGHT``.
+
+    The thumb of a ``flat`` hand lies beside the palm, that of another one is opposite the fingers.
+    """
     knuckles, half = link_lengths(subject).l6, dimension(subject, "handbreadth") / 2.0
     across, ahead = np.array([0.0, -1.0, 0.0]), np.array([1.0, 0.0, 0.0])
     opened, closed = (radians(-30.0), 0.0, 0.0), (radians(62.0), radians(70.0), radians(40.0))
@@ -46,9 +50,13 @@ def hand_digits(subject: Subject, side: float) -> tuple[Digit, ...]:
         bones = tuple(knuckles * reach * bone for bone in BONES)
         digits.append(Digit(name, root, ahead, across, bones, FLESH, opened, closed))
     root = np.array([0.22 * knuckles, side * 0.66 * half, 0.004])
+    bones = tuple(knuckles * bone for bone in THUMB_BONES)
+    if flat:
+        beside = _unit(0.66, 0.75 * side, 0.0)
+        hinge, opened, closed = np.cross(beside, OUT), (radians(-15.0), 0.0, 0.0), (radians(20.0), *FLAT_THUMB)
+        return (*digits, Digit("thumb", root, beside, hinge, bones, THUMB_FLESH, opened, closed))
     up, forward = _unit(0.25, 0.34 * side, 0.90), np.array([1.0, -0.10 * side, -0.35])
     hinge = _unit(*np.cross(up, forward))
-    bones = tuple(knuckles * bone for bone in THUMB_BONES)
     opened, closed = (radians(-40.0), 0.0, 0.0), (radians(72.0), radians(45.0), radians(55.0))
     digits.append(Digit("thumb", root, up, hinge, bones, THUMB_FLESH, opened, closed))
     return tuple(digits)

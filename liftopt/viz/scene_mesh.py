@@ -13,7 +13,7 @@ from liftopt.types import Array
 
 SIDES, FEW_SIDES = 20, 8  # of a ring: smooth at the size of a screen, for limbs and for fingers
 THIN = 0.02  # [m]
-CAP_RINGS = 3  # of a rounded end
+CAP_RINGS, MANY_RINGS, LONG = 3, 8, 0.06  # of a rounded end, of one that bulges more than so far [m]
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,8 @@ def _cap(loop: Array, bulge: Array) -> list[Array]:
     if not bulge.any():
         # The rim once more, so that the flat end does not share its normals with the side.
         return [loop.copy(), centre + 1e-6 * (loop - centre)]
-    angles = np.linspace(0.0, np.pi / 2, CAP_RINGS + 1)[1:]
+    rings = MANY_RINGS if np.linalg.norm(bulge) > LONG else CAP_RINGS
+    angles = np.linspace(0.0, np.pi / 2, rings + 1)[1:]
     return [centre + max(float(np.cos(t)), 1e-6) * (loop - centre) + float(np.sin(t)) * bulge for t in angles]
 
 

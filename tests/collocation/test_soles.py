@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from liftopt.collocation.soles import resting, sole_rows, support
+from liftopt.collocation.soles import resting, sole_rows
 from liftopt.multibody.agent import Stance
 from liftopt.multibody.trajectory import GRAVITY
 
@@ -19,7 +19,7 @@ def _ground(force: tuple[float, float, float], x: float, y: float, turn: float =
 
 
 def test_the_support_is_the_rectangle_around_both_soles() -> None:
-    assert support(STANCE) == (-0.07, 0.13, 0.15)
+    assert STANCE.support == (-0.07, 0.13, 0.15)
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,7 @@ def one_armed() -> Callable[..., Posture]:
 
     def posture(**values: float) -> Posture:
         names = [field.name for field in (*fields(Posture), *fields(ArmPosture)) if field.name not in ("arms", "side")]
-        given = dict.fromkeys(names, 0.0) | {"elbow_flexion": 80.0, "wrist_across": -0.2} | values
+        given = dict.fromkeys(names, 0.0) | {"elbow_flexion": 80.0, "wrist_across": -0.2, "heavier_foot": 0.5} | values
         arrays = {name: np.array([value]) for name, value in given.items()}
         arm = {field.name: arrays.pop(field.name) for field in fields(ArmPosture) if field.name != "side"}
         return Posture(**arrays, arms=(ArmPosture("right", **arm),))

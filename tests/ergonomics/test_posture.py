@@ -86,7 +86,7 @@ def _whole(hands: tuple[str, ...] = ("right", "left"), **degrees: float) -> Post
     for joint, angle in degrees.items():
         q[:, agent.moving_joints.index(f"human_{joint}")] = np.radians(angle)
     force = np.tile((0.0, 0.0, 30.0), (1, len(hands), 1))
-    return posture_by(agent, agent_trajectory(agent, q, np.zeros_like(q), np.zeros_like(q), force), np.eye(3))
+    return posture_by(agent, agent_trajectory(agent, q, np.zeros_like(q), np.zeros_like(q), force), np.eye(3), 0.18)
 
 
 def test_legs_and_trunk_incline_the_trunk_together() -> None:
@@ -112,3 +112,14 @@ def test_the_load_of_each_hand_and_of_both() -> None:
     assert [arm.hand_load[0] for arm in both.arms] == pytest.approx([30.0 / 9.81] * 2)
     assert both.load[0] == pytest.approx(60.0 / 9.81)
     assert [arm.hand_load[0] for arm in left.arms] == pytest.approx([0.0, 30.0 / 9.81])
+
+
+def test_weight_on_both_feet() -> None:
+    """Even where nothing is aside; by hand, 30 N held by one hand move the centre of pressure towards it."""
+    assert _whole().heavier_foot[0] == pytest.approx(0.5, abs=1e-6)
+    agent = whole_human_agent(Subject(1.75, 75.0, "male"), hands=("left",))
+    q = np.zeros((1, len(agent.moving_joints)))
+    person = agent_trajectory(agent, q, q, q, np.array([[[0.0, 0.0, 30.0]]]))
+    aside = 30.0 * person.grasp_position[0, 0, 1] / person.ground_force[0, 2]
+    found = posture_by(agent, person, np.eye(3), 0.18).heavier_foot[0]
+    assert found == pytest.approx(0.5 + aside / 0.18, rel=1e-6)

@@ -62,6 +62,7 @@ def test_worksheet_of_light_bench_work(score: Callable[..., Rula]) -> None:
         ("trunk", "trunk_bend", {-11: 2, 0: 1, 11: 2}),
         ("lower_arm", "wrist_across", {-0.2: 1, 0.01: 2}),
         ("lower_arm", "wrist_outside", {0.04: 1, 0.06: 2}),
+        ("legs", "heavier_foot", {0.5: 1, 0.66: 1, 0.67: 2, 1.0: 2}),
         ("force", "hand_load", {0: 0, 1.9: 0, 2: 1, 10: 1, 10.1: 2}),
     ],
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import ModuleType
+
 import numpy as np
 import pytest
 
@@ -15,7 +17,6 @@ from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
 from liftopt.search.session import Session
 from liftopt.search.solid_distances import solid_distances
 from liftopt.search.team_solids import TeamSolids
-from tests.coal_distance import distance
 
 BOX = {"object.depth": 0.3, "object.width": 0.3, "object.height": 0.3, "solver.intervals": 8}
 
@@ -43,7 +44,9 @@ def wandering(problem: Problem, rng: np.random.Generator) -> np.ndarray:
     return problem.pack(control, np.zeros(problem.layout.force.shape))
 
 
-def test_distances_are_coals(problem: Problem, solids: TeamSolids, rng: np.random.Generator) -> None:
+def test_distances_are_coals(
+    problem: Problem, solids: TeamSolids, rng: np.random.Generator, coal_distance: ModuleType
+) -> None:
     """Every pair that is near has coal's signed distance; every other one is at least as far as was asked."""
     x = wandering(problem, rng)
     coordinates = problem.mesh.basis[0] @ problem.unpack(x)[0]
@@ -51,7 +54,7 @@ def test_distances_are_coals(problem: Problem, solids: TeamSolids, rng: np.rando
     for p, pair in enumerate(solids.pairs):
         s, t = solids.ends[p]
         for k in (0, 4, 8):
-            exact = distance(pair.one, found.placements[k, s], pair.other, found.placements[k, t])
+            exact = coal_distance.distance(pair.one, found.placements[k, s], pair.other, found.placements[k, t])
             if np.isfinite(found.distance[k, p]):
                 assert found.distance[k, p] == pytest.approx(exact, abs=1e-6)
             else:

@@ -18,10 +18,10 @@ from liftopt.multibody.solids import solids_of
 from liftopt.scenario.build import agents_of
 from liftopt.viz.camera import in_perspective
 from liftopt.viz.digits import distance_to_box
+from liftopt.viz.person_bodies import FREE_ARM
 from liftopt.viz.picture import MARGIN, PANEL, bodies_at, picture_of
 from liftopt.viz.playback import playback_at
 from liftopt.viz.scene import CONCRETE, SEE_THROUGH, Cast, parts_of
-from liftopt.viz.scene_person import FREE_ARM
 from liftopt.viz.viewer_views import views_of
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,11 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
+from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.scenario.build import agents_of
+from liftopt.viz.person_bodies import PersonBodies
 from liftopt.viz.playback import Playback, continuous, playback_of
 from liftopt.viz.scene import Cast, lift_commands, parts_of
 from liftopt.viz.scene_arrow import arrow_values
@@ -183,7 +187,10 @@ def _drawn(commands: list[dict[str, Any]]) -> set[str]:
 @pytest.mark.parametrize(
     "subject", [Subject(1.75, 75.0, "male"), Subject(1.6, 60.0, "female"), Subject(2.0, 60.0, "male")]
 )
-def test_the_person_is_as_tall_as_the_subject_and_stands_on_the_floor(subject: Subject) -> None:
-    vertices = np.vstack([part.mesh.vertices for part in person_parts("human", subject)])
+@pytest.mark.parametrize("make", [human_agent, whole_human_agent])
+def test_the_person_is_as_tall_as_the_subject_and_stands_on_the_floor(subject: Subject, make: Any) -> None:
+    agent = make(subject)
+    person = SimpleNamespace(name=agent.name, joint_names=tuple(agent.model.names)[1:], grasps=agent.grasps)
+    vertices = np.vstack([part.mesh.vertices for part in person_parts(PersonBodies.of(person), subject)])
     assert vertices[:, 2].max() == pytest.approx(subject.stature, abs=0.03)  # with hair
     assert vertices[:, 2].min() == pytest.approx(0.0, abs=0.005)

@@ -134,6 +134,11 @@ def link_lengths(subject: Subject) -> LinkLengths:
     )
 
 
+def feet_apart(subject: Subject) -> float:
+    """Return the distance between the middles of the subject's feet, which stand below the hip joints [m]."""
+    return 2.0 * HIP_JOINT_SPREAD * dimension(subject, "hipbreadth")
+
+
 @dataclass(frozen=True)
 class Landmarks:
     """Heights above the ground of the upright subject [m]; omphalion is the base of the spine (L1)."""

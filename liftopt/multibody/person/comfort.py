@@ -8,7 +8,7 @@ from math import radians
 
 import numpy as np
 
-from liftopt.multibody.agent import Comfort
+from liftopt.multibody.agent import Comfort, Lean
 from liftopt.multibody.person.range_of_motion import RANGES, TRUNK_JOINTS, JointRange
 from liftopt.multibody.person.whole_joints import HANDS, WHOLE_RANGES
 from liftopt.multibody.sources import Source
@@ -78,6 +78,15 @@ WHOLE_COMFORTS: tuple[JointComfort, ...] = (
     *(BENDING_TRUNK if item.joint == BENDING_TRUNK.joint else item for item in COMFORTS[:TRUNK_JOINTS]),
     *(replace(item, joint=f"{side}_{item.joint}") for side in HANDS for item in COMFORTS[TRUNK_JOINTS:]),
 )
+
+
+# Angles of the trunk from the vertical [deg]; the largest is chosen for this model, beyond what a lift asks for.
+LEAN_ROOM, LEAN_MOST = 60.0, 135.0
+
+
+def human_lean(joint: str) -> Lean:
+    """Return how far a person's trunk may lean who bends at hips, knees and ankles too; ``joint`` carries the trunk."""
+    return Lean(joint, radians(LEAN_ROOM), radians(LEAN_MOST))
 
 
 def human_comfort() -> Comfort:
