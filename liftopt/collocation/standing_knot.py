@@ -13,7 +13,8 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.collocation.dynamics import roll_pitch_yaw
-from liftopt.collocation.spatial_symbols import Force, Placed
+from liftopt.collocation.spatial_symbols import Force
+from liftopt.collocation.standing_place import PLACE_SIZE, base_of
 from liftopt.collocation.tree_dynamics import Tree
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
 from liftopt.types import Array
@@ -21,8 +22,7 @@ from liftopt.types import Array
 # Of each hand: p_world_grasp, f . f, m . m, cosine, f_object, m_object; then the ground's force and moment.
 HAND_OUTPUTS, GROUND_OUTPUTS = 12, 6
 POINT, OWN, COSINE = slice(0, 3), slice(3, 12), 5
-# Parameters after those of the model: x, y, z, cosine and sine of the heading of the base, then nine of each grip.
-PLACE_SIZE, GRIP_SIZE = 5, 9
+GRIP_SIZE = 9  # parameters of each hand, after those of the model and of the place
 
 
 @dataclass(frozen=True)
@@ -103,9 +103,7 @@ class StandingKnot:
         self.leaning = ca.dot(leaning, self.lean)  # its share of the weighted sum
 
         place, grips = entries[-PLACE_SIZE - GRIP_SIZE * hands :][:PLACE_SIZE], entries[-GRIP_SIZE * hands :]
-        cosine, sine = place[3], place[4]
-        turned = ca.vertcat(ca.horzcat(cosine, -sine, 0), ca.horzcat(sine, cosine, 0), ca.horzcat(0, 0, 1))
-        self.base = Placed(turned, place[:3])
+        self.base = base_of(place)
         self.attitude, _ = roll_pitch_yaw(ca, self.angles)
         turns = [ca.reshape(grip, 3, 3).T for grip in ca.vertsplit(grips, GRIP_SIZE)]
         found = [structure.getFrameId(name) for name in frames]

@@ -29,6 +29,10 @@ def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: 
         own, limits = slice(first, first + n), agent.limits
         used = _shares(tau[own, :], -limits.tau_lower, limits.tau_upper) if task.shares else tau[own, :]
         total += weight * ca.sum1(used**2)
+        if agent.spine is not None and task.spine_weight:
+            below, above = (ca.repmat(ca.DM(side), 1, tau.size2()) for side in agent.spine)
+            borne = tau[own, :] * ca.if_else(tau[own, :] > 0, above, below)
+            total += task.spine_weight * ca.sum1(borne**2)
         if agent.comfort is not None and task.range_weight:
             total += task.range_weight * _discomfort(agent.comfort, q[own, :])
         first += n

@@ -14,12 +14,13 @@ import pinocchio as pin
 import pytest
 
 from liftopt.ergonomics.lumbosacral import Lumbosacral, lumbosacral
-from liftopt.ergonomics.spine import EXTENSOR, FLANK, FLEXOR, SpineLoad, load_through
+from liftopt.ergonomics.spine import SpineLoad, load_through
 from liftopt.ergonomics.spine_measures import spine_measures
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.person.anthropometry import landmarks, link_lengths
 from liftopt.multibody.person.human import human_agent
+from liftopt.multibody.person.lumbar_levers import EXTENSOR, FLANK, FLEXOR
 from liftopt.multibody.person.segments import SEGMENTS, segment_mass
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.person.whole_body import whole_human_agent
@@ -214,3 +215,16 @@ def _by_momentum(
         "lateral": float(moment @ ahead),
         "twist": float(moment @ normal),
     }
+
+
+def test_torques_count_as_one_where_their_muscle_presses_with_the_action_limit() -> None:
+    """Those that hold the trunk up and that bend it aside, in the order of either body's joints."""
+    for agent in (human_agent(MAN), whole_human_agent(MAN)):
+        assert agent.spine is not None
+        names = [name.removeprefix("human_") for name in agent.moving_joints]
+        below, above = agent.spine
+        for name, side, share in zip(
+            names * 2, [below] * len(names) + [above] * len(names), [*below, *above], strict=True
+        ):
+            unit = {"Q1": 408.0, "Q2": 170.0 if side is below else np.inf}.get(name, np.inf)
+            assert share == pytest.approx(1.0 / unit)

@@ -19,6 +19,7 @@ from liftopt.multibody.person.bodies import whole_bodies
 from liftopt.multibody.person.comfort import human_lean, whole_comfort
 from liftopt.multibody.person.human import NAME, ORIGIN, POSTURE_DEG, human_chain, human_root, joint_bounds
 from liftopt.multibody.person.human_shapes import whole_shapes
+from liftopt.multibody.person.lumbar_levers import spine_shares
 from liftopt.multibody.person.stance import human_stance
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.person.whole_joints import ARM, HANDS, JOINTS, TRUNK, table_joint, whole_limits
@@ -92,6 +93,7 @@ def whole_human_agent(
         posture=np.array([radians(degrees.get(table_joint(joint), 0.0)) for joint in JOINTS]),
         workspace=HalfSpace(ahead, float(ahead @ (place.x, place.y, 0.0))),
         comfort=whole_comfort(),
+        spine=spine_shares(JOINTS),
         stance=human_stance(subject),
         lean=human_lean(joint_name(name, TRUNK[-1])),
     )
