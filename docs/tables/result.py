@@ -22,7 +22,8 @@ MEANINGS = {
     r"objective_error": "objective / objective_limit - 1",
     r"objective_bar": "by how much the limit may be off, either way",
     r"objective_\w+": "unweighted integral of this term: an agent's squared torques (preset natural: of their shares "
-    "of strength), accelerations (natural: times (duration / 2 s)^4), grasp forces; range of motion, the object's tilt",
+    "of strength), accelerations (natural: times (duration / 2 s)^4), grasp forces; range of motion, the object's "
+    "tilt; where it has a weight, the load on the spine",
     r"iterations": "of the solver, from the start that was kept",
     r"intervals": "N of the mesh",
     r"max_violation": "largest value among the checks that must hold at the knots to 1e-6",

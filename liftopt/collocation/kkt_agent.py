@@ -9,6 +9,7 @@ from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.outputs import AgentOutputs, outputs_of
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.standing import rooted
 from liftopt.multibody.trajectory import attitude, bearing, cross, mirrored, turned
 from liftopt.types import Array
 
@@ -125,26 +126,14 @@ def _lean(agent: Agent, model: pin.Model, q: Array, slopes: Array) -> tuple[Arra
 
 
 def _bare_ground(agent: Agent, model: pin.Model, q: Array, v: Array, a: Array, period: float) -> tuple[Array, Array]:
-    """Return what the ground exerts on all that moves (K, 6) without the grasps, and its slopes (K, 6, 3 n).
-
-    It is what the root of the same tree on a free-flyer at the base would have to transmit: RNEA gives it in the axes
-    of the base, about its origin.
-    """
-    n, base = model.nv, pin.SE3(_base(agent))
-    floating = pin.Model()
-    floating.gravity = model.gravity
-    root = floating.addJoint(0, pin.JointModelFreeFlyer(), base, "floating_base")
-    for j in range(1, model.njoints):
-        parent, placement = model.parents[j], model.jointPlacements[j]
-        placement = placement if parent else base.inverse() * placement
-        floating.addJoint(parent + root, model.joints[j], placement, model.names[j])
-        floating.appendBodyToJoint(j + root, model.inertias[j], pin.SE3.Identity())
-    data, still = floating.createData(), np.zeros(6)
+    """Return what the ground exerts on all that moves (K, 6) without the grasps, and its slopes (K, 6, 3 n)."""
+    n, tree, still = model.nv, rooted(model, _base(agent)), np.zeros(6)
+    data = tree.createData()
     ground, slopes = np.zeros((len(q), 6)), np.zeros((len(q), 6, 3 * n))
     for k in range(len(q)):
         state = np.concatenate([still, [1.0], q[k]]), np.concatenate([still, v[k]]), np.concatenate([still, a[k]])
-        ground[k] = pin.rnea(floating, data, *state)[:6]
-        by_state = pin.computeRNEADerivatives(floating, data, *state)
+        ground[k] = pin.rnea(tree, data, *state)[:6]
+        by_state = pin.computeRNEADerivatives(tree, data, *state)
         slopes[k] = np.hstack([each[:6, 6:] / period**order for order, each in enumerate(by_state)])
     return ground, slopes
 

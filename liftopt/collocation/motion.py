@@ -64,7 +64,8 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
     torques' directions, as the task has it), ``"acceleration"`` (squared accelerations of those joints and of the
     object's six coordinates, times the task's pace) and ``"force"`` (squared grasp forces, and squared moments over the
     squared breadth of the hand); with shares, or where they have a weight, ``"range"`` (what joint angles cost, see
-    ``Comfort``) and ``"tilt"`` (the object's squared roll and pitch in units of ``TILT``).
+    ``Comfort``) and ``"tilt"`` (the object's squared roll and pitch in units of ``TILT``); where it has a weight
+    ``"spine"`` (squared shares in the load on agents' spines, see ``Agent.spine``).
     """
     task = problem.task
     step = np.diff(motion.time)
@@ -89,7 +90,17 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
         terms["range"] = float(sum(weights @ cost for cost in costs))
     if "tilt" in counted:
         terms["tilt"] = float(weights @ ((motion.object.pose[:, 3:5] / TILT) ** 2).sum(axis=1))
+    if "spine" in counted:
+        spines = [agent.spine for agent in problem.team.agents]
+        loads = [_spine_load(own, a) for own, a in zip(spines, motion.agents, strict=True) if own is not None]
+        terms["spine"] = float(sum(weights @ load for load in loads))
     return terms
+
+
+def _spine_load(shares: Array, agent: AgentTrajectory) -> Array:
+    """Return the squared shares (K,) of an agent's torques in the load on its spine."""
+    tau = agent.tau[:, agent.moving]
+    return np.asarray(((np.where(tau > 0.0, shares[1], shares[0]) * tau) ** 2).sum(axis=1))
 
 
 def objective_weights(problem: Problem) -> dict[str, float]:
@@ -98,4 +109,5 @@ def objective_weights(problem: Problem) -> dict[str, float]:
     weights = {agent.name: w for agent, w in zip(problem.team.agents, task.agent_weights, strict=True)}
     weights |= {"acceleration": task.acceleration_weight, "force": task.force_weight}
     more = {"range": task.range_weight, "tilt": task.tilt_weight}
-    return weights | {name: weight for name, weight in more.items() if weight or task.shares}
+    weights |= {name: weight for name, weight in more.items() if weight or task.shares}
+    return weights | ({"spine": task.spine_weight} if task.spine_weight else {})

@@ -65,6 +65,10 @@ def agent_weights(task: LiftTask, i: int, agent: Agent, n_y: int, posture_weight
         variable[first + FORCE_SIZE : first + room] = task.force_weight * period / grasp.breadth**2
     effort = np.full(n, task.agent_weights[i] * period)
     below, above = (effort / unit**2 for unit in torque_units(agent.limits)) if task.shares else (effort, effort)
+    if agent.spine is not None and task.spine_weight:
+        below, above = (
+            own + task.spine_weight * period * share**2 for own, share in zip((below, above), agent.spine, strict=True)
+        )
     if agent.lean is not None:
         own = task.range_weight * period / (1.0 - np.cos(agent.lean.room)) ** 2
         below, above = np.append(below, own), np.append(above, own)

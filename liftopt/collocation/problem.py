@@ -20,6 +20,7 @@ from liftopt.collocation.objective import Weights, agent_weights, object_weights
 from liftopt.collocation.separating_planes import PosePart, SeparatingPlanes
 from liftopt.collocation.spline import Mesh
 from liftopt.collocation.standing_dynamics import StandingTopology, standing_agent_functions
+from liftopt.collocation.standing_place import held_anywhere
 from liftopt.collocation.task import LiftTask
 from liftopt.collocation.wrench_dynamics import (
     WrenchTopology,
@@ -242,16 +243,19 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
             grips = [grasp.R_hand_object for grasp in agent.grasps]
             requests.append((wrench_agent_functions, WrenchTopology.holding(model, agent.hands, *grips)))
         else:
-            held = {grasp.frame: grasp.R_hand_object for grasp in agent.grasps}
+            own = {grasp.frame: grasp.R_hand_object for grasp in agent.grasps}
             base = np.eye(4) if agent.stance is None else agent.T_world_base
-            grips = [held.get(hand, np.eye(3)) for hand in agent.hands]
+            grips = [own.get(hand, np.eye(3)) for hand in agent.hands]
             trunk = agent.lean.joint if agent.lean else ""
             standing = StandingTopology.standing(model, agent.hands, base, *grips, trunk=trunk)
             requests.append((standing_agent_functions, standing))
+    held = Topology.of(lifted.model, lifted.grasp_frames)
     if all(grasp.is_point_contact for agent in agents for grasp in agent.grasps):
-        requests.append((object_functions, Topology.of(lifted.model, lifted.grasp_frames)))
+        builder = object_functions
     else:
-        requests.append((wrench_object_functions, WrenchTopology.holding(lifted.model, lifted.grasp_frames)))
+        builder, held = wrench_object_functions, WrenchTopology.holding(lifted.model, lifted.grasp_frames)
+    # Hands may be anywhere on the object.
+    requests.append((builder, held if all(agent.is_simple for agent in agents) else held_anywhere(held)))
     return requests
 
 

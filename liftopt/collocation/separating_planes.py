@@ -23,6 +23,7 @@ from liftopt.collocation.pose_kernels import (
     parameter_free,
     pose_functions,
 )
+from liftopt.collocation.standing_poses import StandingPoseTopology, standing_pose_functions
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.types import Array, Progress
 
@@ -150,7 +151,10 @@ def pose_request(
     """Return what to generate the kernel of an agent's or the object's poses from."""
     if part == len(agents):
         return object_pose_functions, parameter_free(lifted.model)
-    return pose_functions, PoseTopology.moving(agents[part].reduced(), joints)
+    agent, model = agents[part], agents[part].reduced()
+    if agent.stance is None:
+        return pose_functions, PoseTopology.moving(model, joints)
+    return standing_pose_functions, StandingPoseTopology.standing(model, joints, agent.T_world_base)
 
 
 def pose_parts(

@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from liftopt.collocation import spatial_symbols, standing_knot, tree_dynamics
+from liftopt.collocation import spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics
 from liftopt.collocation.dynamics import KnotFunctions, Topology, clean_rotation, symbolic_model
 from liftopt.collocation.standing_knot import StandingKnot
+from liftopt.collocation.standing_place import in_base_axes, place_parameters
 from liftopt.collocation.wrench_dynamics import WrenchTopology
 from liftopt.types import Array
 
@@ -46,11 +47,7 @@ class StandingTopology(WrenchTopology):
             grips: (3, 3) ``Grasp.R_hand_object`` of each hand.
             trunk: name of the joint whose link's lean is an output, or none.
         """
-        local, T_base_world = model.copy(), pin.SE3(T_world_base).inverse()
-        for j in range(1, model.njoints):
-            if not model.parents[j]:
-                moved = T_base_world * model.jointPlacements[j]
-                local.jointPlacements[j] = pin.SE3(clean_rotation(moved.rotation), moved.translation)
+        local = in_base_axes(model, T_world_base)
         found = WrenchTopology.holding(local, frames, *grips)
         carried = int(model.getJointId(trunk)) if trunk else 0
         return StandingTopology(local, frames, found.entries, found.turns, T_world_base, carried)
@@ -65,15 +62,16 @@ class StandingTopology(WrenchTopology):
     @property
     def parameters(self) -> Array:
         """Values (p,): of the model's entries that are not structurally zero, of the place and of the grips."""
-        place = [*self.T_world_base[:3, 3], *self.T_world_base[:2, 0]]
+        place = place_parameters(self.T_world_base)
         return np.concatenate([self.entries[self.entries != 0.0], place, *(turn.ravel() for turn in self.turns)])
 
     def signature(self) -> str:
         """Return a digest of all that a kernel is generated from; equal signatures share a kernel."""
         digest = hashlib.sha256(Topology.signature(self).encode())
         digest.update(f"{self.trunk} {self.up.tolist()}".encode())
-        for source in (__file__, spatial_symbols.__file__, standing_knot.__file__, tree_dynamics.__file__):
-            digest.update(Path(source).read_bytes())
+        for part in (spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics):
+            digest.update(Path(str(part.__file__)).read_bytes())
+        digest.update(Path(__file__).read_bytes())
         return digest.hexdigest()
 
 

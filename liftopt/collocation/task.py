@@ -28,6 +28,7 @@ class LiftTask:
         pace: factor on the squared accelerations, a part of their term.
         range_weight: weight of what the joint angles of agents cost, see ``Comfort``.
         tilt_weight: weight of the object's squared roll and pitch, in units of ``TILT``.
+        spine_weight: weight of the squared shares in the load on agents' spines, see ``Agent.spine``.
         shares: whether torques count as shares of the joint's limit in their direction, not in Nm.
         max_grasp_force: largest norm of a grasp force [N].
         balance_tolerance: tolerance of the object's balance (eq. 17) [N, Nm]; 0 asks for equality on five rows.
@@ -46,5 +47,6 @@ class LiftTask:
     balance_tolerance: float = 0.0
     range_weight: float = 0.0
     tilt_weight: float = 0.0
+    spine_weight: float = 0.0
     shares: bool = False
     pace: float = 1.0

@@ -1,7 +1,7 @@
-"""What the holds on the object allow, as CasADi expressions that must not be negative, written apart from the NLP.
+"""What holds on the object and soles on the floor allow, as CasADi expressions that must not be negative.
 
-Everything is told of one instant. A hold that transmits moments has a cap on them and a largest angle between hand and
-object; a flat hand only pushes, and neither slides nor tips.
+They are written apart from the NLP, and told of one instant. A hold that transmits moments has a cap on them and a
+largest angle between hand and object; a flat hand only pushes, and neither slides nor tips, and so do soles.
 """
 
 from __future__ import annotations
@@ -11,10 +11,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from liftopt.multibody.agent import Grasp
+from liftopt.multibody.agent import Grasp, Stance
+from liftopt.multibody.trajectory import GRAVITY
 
 MOMENT_UNIT = 1.0  # what the solver sees as one, near the size of what is found [Nm]
 FORCE_UNIT = 10.0  # likewise [N]
+FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT = 100.0, 10.0  # under the soles
 
 
 def room(grasp: Grasp, force: Any, moment: Any, grip: Any, attitude: Any) -> list[Any]:
@@ -46,6 +48,30 @@ def room(grasp: Grasp, force: Any, moment: Any, grip: Any, attitude: Any) -> lis
             swivel = 2 / 3 * grasp.friction * reach
             left += _within([(about_x, reach), (about_y, reach), (about_z, swivel)], MOMENT_UNIT)
     return left
+
+
+def footing(stance: Stance, ground: Any) -> list[Any]:
+    """Return what the soles leave of each of their limits, all of them >= 0, in sizes near one.
+
+    Of the friction that keeps them from sliding, by the pyramid inscribed in its cone; of the way of the centre of
+    pressure to the heels, the toes and both sides; and of what friction holds about z of a pressure that is even over
+    a disc as wide as both soles.
+
+    Args:
+        stance: how it stands.
+        ground: (6,) force and moment of the ground on all that moves, about the base's origin in its axes; the feet
+            add theirs.
+    """
+    feet = stance.mass * GRAVITY
+    x, y, _ = stance.p_base_com
+    push_x, push_y, push, about_x, about_y, about_z = ca.vertsplit(ground + ca.DM([0, 0, feet, y * feet, -x * feet, 0]))
+    back, ahead, aside = stance.support
+    held = stance.friction / np.sqrt(2) * push
+    left = _within([(push_x, held), (push_y, held)], FOOT_FORCE_UNIT)
+    left += [(-about_y - back * push) / FOOT_MOMENT_UNIT, (ahead * push + about_y) / FOOT_MOMENT_UNIT]
+    return left + _within(
+        [(about_x, aside * push), (about_z, 2 / 3 * stance.friction * aside * push)], FOOT_MOMENT_UNIT
+    )
 
 
 def _within(pairs: list[tuple[Any, Any]], unit: float) -> list[Any]:

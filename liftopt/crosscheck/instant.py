@@ -14,10 +14,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 from liftopt.collocation.task import LiftTask
-from liftopt.crosscheck.holds import room
+from liftopt.crosscheck.holds import footing, room
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.standing import rooted
 from liftopt.types import Array
 
 OBJECT_SIZE, FORCE_SIZE = 6, 3
@@ -94,8 +96,10 @@ class Instant:
             grasps give [N, Nm].
         closure: q -> (3 grasps,) each grasp point less the object's [m].
         grasp: y -> (grasps,) squared norms of the grasp forces [N^2].
-        hold: y -> what the holds leave of their other limits, see ``room``; empty for grips at points.
+        hold: y -> what the holds leave of their other limits, see ``room``, and then what the soles leave of theirs,
+            see ``footing``; empty for grips at points of agents that do not stand.
         workspace: q -> (grasps with a half-space,) distance of the grasp point from its border [m].
+        tilt: q -> (agents with a trunk that leans,) 1 - cos of its angle to the vertical.
     """
 
     coordinates: Coordinates
@@ -105,6 +109,7 @@ class Instant:
     grasp: Any
     hold: Any
     workspace: Any
+    tilt: Any
 
 
 def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> Instant:
@@ -117,10 +122,14 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
     needed: list[Any] = []
     hands: list[Any] = []
     grips: list[Any] = []
+    under: list[Any] = []
+    tilts: list[Any] = []
     for agent, (first, last) in zip(agents, pairwise(np.cumsum([0, *at.joints]).tolist()), strict=True):
         s, held = slice(first, last), slice(len(hands), len(hands) + len(agent.grasps))
-        tau_needed, points, axes = _agent(agent, q[s], v[s], a[s], forces[held], moments[held])
+        tau_needed, ground, points, axes = _agent(agent, q[s], v[s], a[s], forces[held], moments[held])
         needed.append(tau_needed)
+        under += footing(agent.stance, ground) if agent.stance else []
+        tilts += _tilt(agent, q[s])
         hands += points
         grips += axes
     grasps, holders = zip(*((grasp, agent) for agent in agents for grasp in agent.grasps), strict=True)
@@ -143,33 +152,58 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
         ca.Function("balance", [y], ca.cse([balance])),
         ca.Function("closure", [q], ca.cse([ca.vertcat(*hands) - ca.vertcat(*edges)])),
         ca.Function("grasp", [y], [ca.vertcat(*(ca.dot(f, f) for f in forces))]),
-        ca.Function("hold", [y], ca.cse([ca.vertcat(*left)])),
+        ca.Function("hold", [y], ca.cse([ca.vertcat(*left, *under)])),
         ca.Function("workspace", [q], ca.cse([ca.vertcat(*distances)])),
+        ca.Function("tilt", [q], ca.cse([ca.vertcat(*tilts)])),
     )
 
 
 def _agent(
     agent: Agent, q: Any, v: Any, a: Any, forces: list[Any], moments: list[Any]
-) -> tuple[Any, list[Any], list[Any]]:
-    """Return the torques (n,) that an agent needs, its grasp points (3,) and their grip axes (3, 3) in the world."""
+) -> tuple[Any, Any, list[Any], list[Any]]:
+    """Return the torques (n,) that an agent needs, what the ground does, its grasp points and their grip axes.
+
+    Grasp points (3,) and axes (3, 3) are in the world. What the ground does to all that moves (6,) is told about the
+    base's origin in its axes, of one who stands; of others it is empty.
+    """
     import liftopt.pinocchio_casadi as cpin
 
     reduced = agent.reduced()
-    model = cpin.Model(reduced)
+    root = 1 if agent.stance else 0
+    tree = rooted(reduced, agent.T_world_base) if agent.stance else reduced
+    if agent.stance:
+        q, v, a = ca.vertcat(ca.SX(6, 1), 1, q), ca.vertcat(ca.SX(6, 1), v), ca.vertcat(ca.SX(6, 1), a)
+    model = cpin.Model(tree)
     data = model.createData()
     cpin.forwardKinematics(model, data, q)
     points, grips = [], []
-    loads = [ca.SX(6, 1) for _ in range(reduced.njoints)]
+    loads = [ca.SX(6, 1) for _ in range(tree.njoints)]
     for grasp, force, moment in zip(agent.grasps, forces, moments, strict=True):
         frame = reduced.frames[reduced.getFrameId(grasp.frame)]
-        lever, joint = frame.placement.translation, frame.parentJoint
+        lever, joint = frame.placement.translation, frame.parentJoint + root
         placement = data.oMi[joint]
         reaction, twisting = (-ca.mtimes(placement.rotation.T, each) for each in (force, moment))
         loads[joint] += ca.vertcat(reaction, ca.cross(lever, reaction) + twisting)
         points.append(placement.translation + ca.mtimes(placement.rotation, lever))
         grips.append(ca.mtimes(placement.rotation, frame.placement.rotation @ grasp.R_hand_object))
     external = cpin.StdVec_Force([cpin.Force(load[:3], load[3:]) for load in loads])
-    return cpin.rnea(model, model.createData(), q, v, a, external), points, grips
+    tau = cpin.rnea(model, model.createData(), q, v, a, external)
+    return tau[6 * root :], tau[: 6 * root], points, grips
+
+
+def _tilt(agent: Agent, q: Any) -> list[Any]:
+    """Return 1 - cos of the angle of an agent's trunk to the vertical; nothing of one without."""
+    import liftopt.pinocchio_casadi as cpin
+
+    if agent.lean is None:
+        return []
+    reduced = agent.reduced()
+    trunk, upright = reduced.getJointId(agent.lean.joint), reduced.createData()
+    pin.forwardKinematics(reduced, upright, pin.neutral(reduced))
+    model = cpin.Model(reduced)
+    data = model.createData()
+    cpin.forwardKinematics(model, data, q)
+    return [1 - ca.dot(data.oMi[trunk].rotation[2, :].T, ca.DM(upright.oMi[trunk].rotation[2]))]
 
 
 def _object_equations(lifted: LiftedObject) -> Any:

@@ -11,6 +11,9 @@ from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 
+# A symmetric lift takes no torque to turn or bend sideways; below this share of the largest torque it is rounding.
+NO_TORQUE = 1e-6
+
 
 @dataclass(frozen=True)
 class InverseDynamics:
@@ -21,7 +24,8 @@ class InverseDynamics:
         labels: (n,) joints, or rows of the balance.
         ours, theirs: (K, n) torques with the grasp reaction applied, locked joints included [Nm, N]; for the object the
             wrench its motion needs less what the grasps give, force along world axes, moment about body axes.
-        scale: (n,) what an error is relative to: the largest torque of the joint, the object's weight and its weight
+        scale: (n,) what an error is relative to: the largest torque of the joint (at least ``NO_TORQUE`` of the
+            agent's largest), the object's weight and its weight
             at half the span of the grasps; of a single grasp, at its distance from the centre of mass.
         gap: largest distance of a grasp point of the agent from where the solution has it [m]; 0 for the object.
     """
@@ -77,7 +81,8 @@ def inverse_dynamics(solution: Solution) -> tuple[InverseDynamics, ...]:
     results = []
     for agent in solution.agents:
         dofs = [dof for _, dof in joint_places(model, agent)]
-        scale = np.maximum(np.abs(agent.tau).max(axis=0), np.finfo(float).tiny)
+        largest = np.abs(agent.tau).max(axis=0)
+        scale = np.maximum(largest, NO_TORQUE * largest.max())
         results.append(
             InverseDynamics(agent.name, agent.joint_names, agent.tau, found[:, dofs], scale, gaps[agent.name])
         )

@@ -26,7 +26,7 @@ import numpy as np
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.multibody.mujoco_model import States, import_mujoco, spec_of, states_of
 from liftopt.multibody.trajectory import grasps_of
-from liftopt.scenario.build import agents_of
+from liftopt.scenario.build import agents_of, object_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
@@ -35,6 +35,7 @@ TIME_STEP = 5e-4  # [s], at most
 SETTLING = 0.02  # time constant with which the constraints close a gap of the grasp points [s]
 HARDNESS = 0.9999  # of the constraints: the most MuJoCo allows, so its grasp forces are good to some 1e-3
 WINDOW = 0.05  # [s]
+ROLL = 3
 LOST = 1.0  # [rad, m]: a simulation that is this far off is stopped
 # Of the feedback [rad/s]. Deviations grow as exp(49 t) at worst on the paper's lift and exp(114 t) on a lift with the
 # arm nearly straight, where humeral rotation meets hardly any inertia (eigenvalues of the linearised simulation).
@@ -141,8 +142,8 @@ class Simulation:
             self.solution.urdfs.values(), [name for agent in self.solution.agents for name in _pinned(agent)]
         )
         make_balls(spec, self._balls)
-        for agent in self.solution.agents:
-            ends = (f"{agent.name}_grasp", f"grasp_{agent.name}")
+        for *_, hold in grasps_of(self.solution.agents):
+            ends = (hold.frame, f"grasp_{hold.name}")
             for body in ends:
                 spec.body(body).add_site().name = f"{body}_site"
             grasp = spec.add_equality()
@@ -216,14 +217,21 @@ class Simulation:
     def _grasps(self) -> int:
         return int(self.solution.object.grasp_position.shape[1])
 
+    @cached_property
+    def _row(self) -> int:
+        """Which row of the object's balance the grasps may leave unserved; of any that serve all, the roll's."""
+        if any(hold.moments for *_, hold in grasps_of(self.solution.agents)):
+            return ROLL
+        return object_of(self.solution.scenario, self.solution.urdfs).unserved_row() or ROLL
+
     @property
-    def _roll(self) -> int:
-        return self._body + 3
+    def _free(self) -> int:
+        return self._body + self._row
 
     @property
     def _turns(self) -> list[int]:
         """Where in qvel the object can turn about its grasp points: a single point leaves all three axes free."""
-        return [self._roll] if self._grasps > 1 else [self._roll, self._roll + 1, self._roll + 2]
+        return [self._free] if self._grasps > 1 else [self._body + row for row in (3, 4, 5)]
 
     def _start(self, k: int, serve: bool) -> float:
         """Put the simulation on the solution; return by how much its grasp forces differ there [N]."""
@@ -231,7 +239,7 @@ class Simulation:
         mujoco.mj_resetData(self._model, data)
         data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
         data.qfrc_applied[:], data.xfrc_applied[:, 3:] = self._states.tau[k], self._moments[k]
-        data.qfrc_applied[self._roll] = self._dense.object.wrench[k, 3] * serve
+        data.qfrc_applied[self._free] = self._dense.object.wrench[k, self._row] * serve
         mujoco.mj_forward(self._model, data)
         # A constraint's force acts on its first body along world axes: on the agent, from the object.
         forces = -data.efc_force.reshape(self._grasps, 3)
@@ -241,7 +249,7 @@ class Simulation:
     def _feedforward(self, k: int, serve: bool) -> Array:
         """Return the solved torques, and the moment on the object if served, halfway through a step."""
         force: Array = self._states.tau[k : k + 2].mean(axis=0)
-        force[self._roll] = self._dense.object.wrench[k : k + 2, 3].mean() * serve
+        force[self._free] = self._dense.object.wrench[k : k + 2, self._row].mean() * serve
         return force
 
     def _feedback(self, k: int) -> Array:

@@ -18,25 +18,12 @@ import pinocchio as pin
 from liftopt.ergonomics.lift import Lift, R_world_person, model_of, subject_in
 from liftopt.ergonomics.lumbosacral import UP, Lumbosacral, lumbosacral
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.person.lumbar_levers import EXTENSOR, FLANK, FLEXOR
 from liftopt.multibody.sources import Source
 from liftopt.multibody.trajectory import AgentTrajectory, cross, turned
 from liftopt.types import Array
 
 BASE = "Q1"  # first joint of the trunk; what carries it is the pelvis
-# Lever arms about the disc [m]: extensors behind it, abdominal muscles ahead of it, those of the flank beside it.
-EXTENSOR, LONG_EXTENSOR, FLEXOR, FLANK = 0.05, 0.075, 0.08, 0.12
-LEVER_SOURCE = Source(
-    "extensors: the 5 cm that such models commonly take (Guengoer 2013, Auburn University), 7.5 cm at most (McGill & "
-    "Norman 1987, J Biomech 20:591-600); abdominal muscles and flanks: about what Jorgensen, Marras, Granata & Wiand "
-    "(2001), Clin Biomech 16:182-193 measured by MRI",
-    "unverified",
-)
-COMPRESSION_LIMIT, COMPRESSION_MOST = 3400.0, 6400.0  # [N]
-COMPRESSION_SOURCE = Source(
-    "NIOSH (1981), Work Practices Guide for Manual Lifting, DHHS 81-122: action limit 3400 N, maximum permissible "
-    "limit 6400 N; 3400 N kept by Waters, Putz-Anderson, Garg & Fine (1993), Ergonomics 36:749-776",
-    "secondary",
-)
 SHEAR_LIMIT, SHEAR_FREQUENT = 1000.0, 700.0  # [N]
 SHEAR_SOURCE = Source(
     "Gallagher & Marras (2012), Clin Biomech 27:973-978: 1000 N up to 100 times a day, 700 N up to 1000 times",

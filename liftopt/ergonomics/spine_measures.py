@@ -6,16 +6,13 @@ import numpy as np
 
 from liftopt.ergonomics.lumbosacral import SACRAL_SLOPE
 from liftopt.ergonomics.measure import Measure
-from liftopt.ergonomics.spine import (
+from liftopt.ergonomics.spine import SHEAR_FREQUENT, SHEAR_LIMIT, SHEAR_SOURCE, SpineLoad
+from liftopt.multibody.person.lumbar_levers import (
     COMPRESSION_LIMIT,
     COMPRESSION_MOST,
     COMPRESSION_SOURCE,
     EXTENSOR,
     LONG_EXTENSOR,
-    SHEAR_FREQUENT,
-    SHEAR_LIMIT,
-    SHEAR_SOURCE,
-    SpineLoad,
 )
 from liftopt.types import Array
 

@@ -181,6 +181,8 @@ class Agent:
         posture: (n,) comfortable posture of those joints, a seed for inverse kinematics [rad].
         workspace: half-space that its grasp points must stay in, or None.
         comfort: where its joints are at ease, or None for one who does not mind.
+        spine: (2, n) what one Nm of each joint's torque, below and above zero, adds to the load on its spine, as a
+            share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
     """
@@ -196,6 +198,7 @@ class Agent:
     posture: Array
     workspace: HalfSpace | None = None
     comfort: Comfort | None = None
+    spine: Array | None = None
     stance: Stance | None = None
     lean: Lean | None = None
 

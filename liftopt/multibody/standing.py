@@ -3,10 +3,28 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
+
+
+def rooted(model: pin.Model, T_world_base: Array) -> pin.Model:
+    """Return a tree on a free-flyer at its base: what RNEA says of the root is what the ground must do.
+
+    It is force and moment about the base's origin, in its axes. Joints keep their order after the root; no frames.
+    """
+    base = pin.SE3(T_world_base)
+    tree = pin.Model()
+    tree.gravity = model.gravity
+    root = tree.addJoint(0, pin.JointModelFreeFlyer(), base, "floating_base")
+    for j in range(1, model.njoints):
+        parent, placement = model.parents[j], model.jointPlacements[j]
+        placement = placement if parent else base.inverse() * placement
+        tree.addJoint(parent + root, model.joints[j], placement, model.names[j])
+        tree.appendBodyToJoint(j + root, model.inertias[j], pin.SE3.Identity())
+    return tree
 
 
 def ground_in_base(agent: Agent, trajectory: AgentTrajectory) -> Array:

@@ -122,6 +122,7 @@ def task_of(scenario: Scenario) -> LiftTask:
         force_weight=objective.force_weight,
         range_weight=objective.range_weight,
         tilt_weight=objective.tilt_weight,
+        spine_weight=objective.spine_weight,
         shares=objective.preset == "natural",
         pace=_pace(scenario),
         max_grasp_force=limits.max_grasp_force,

@@ -16,7 +16,7 @@ from liftopt.scenario.urdf_files import urdf_files
 
 OWN_PLACE = "give the object's own x, y and z"
 # Names that results have for something else: attributes objective_<agent>, variables grasp_<...>.
-TAKEN = ("acceleration", "force", "range", "tilt", "limit", "error", "bar", "grasp", "schema", "table")
+TAKEN = ("acceleration", "force", "range", "tilt", "spine", "limit", "error", "bar", "grasp", "schema", "table")
 ELSEWHERE = "is the name of something else"
 
 
@@ -70,6 +70,7 @@ def _check_weights(scenario: ScenarioFields) -> None:
         "force_weight": objective.force_weight,
         "range_weight": objective.range_weight,
         "tilt_weight": objective.tilt_weight,
+        "spine_weight": objective.spine_weight,
     }
     if not any(weights.values()):
         raise InputError("objective", weights, "at least one weight must be above 0")

@@ -24,6 +24,8 @@ class Objective(Section):
     range_weight: Annotated[float, number("weight of joints away from ease", "", 0.0, 1e6)] = OWN["range_weight"]
     tilt_weight: Annotated[float, number("weight of (tilt / 10 deg) squared", "", 0.0, 1e6)] = OWN["tilt_weight"]
 
+    spine_weight: Annotated[float, number("weight of the load on people's lumbar spines squared", "", 0.0, 1e6)] = 0.0
+
     @model_validator(mode="before")
     @classmethod
     def _by_preset(cls, values: object) -> object:

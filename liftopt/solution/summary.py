@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from liftopt.solution.solution import Solution
 
 
-TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s", "range": "s", "tilt": "s"}
+TERM_UNITS = {"acceleration": "rad^2/s^3, m^2/s^3", "force": "N^2 s", "range": "s", "tilt": "s", "spine": "s"}
 
 
 def summary_dict(solution: Solution, out: Path | None = None, files: Sequence[str] = ()) -> dict[str, Any]:

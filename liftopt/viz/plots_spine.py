@@ -7,14 +7,8 @@ from matplotlib.figure import Figure
 
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.measures import ergonomics_of
-from liftopt.ergonomics.spine import (
-    COMPRESSION_LIMIT,
-    COMPRESSION_MOST,
-    EXTENSOR,
-    LONG_EXTENSOR,
-    SHEAR_FREQUENT,
-    SHEAR_LIMIT,
-)
+from liftopt.ergonomics.spine import SHEAR_FREQUENT, SHEAR_LIMIT
+from liftopt.multibody.person.lumbar_levers import COMPRESSION_LIMIT, COMPRESSION_MOST, EXTENSOR, LONG_EXTENSOR
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes

@@ -225,3 +225,31 @@ def test_the_weights_of_range_and_tilt_move_the_motion(
     now = terms()
     assert terms(range_weight=200.0)["range"] < now["range"]
     assert terms(tilt_weight=60.0)["tilt"] < now["tilt"]
+
+
+def test_what_the_spine_bears_has_a_weight_of_its_own(
+    natural: Problem, optimum: SolverResult, make_task: Callable[..., LiftTask]
+) -> None:
+    """By hand: 170 Nm that hold the trunk up count as one, 408 Nm that bend it aside, none that bend it forward."""
+    spline = RestToRestSpline(N)
+
+    def solved(weight: float) -> tuple[Problem, SolverResult, dict[str, float]]:
+        problem = replace(natural, task=make_task(**NATURAL, spine_weight=weight))
+        found = Banded(problem, BandedOptions(tolerance=1e-8)).solve(optimum.x, deadline=NEVER)
+        assert found.converged
+        return problem, found, objective_terms(problem, motion_at(problem, spline, found.x, spline.phase))
+
+    problem, found, terms = solved(500.0)
+    weights = objective_weights(problem)
+    assert list(terms) == list(weights)
+    assert weights["spine"] == 500.0
+    assert sum(weights[name] * terms[name] for name in terms) == pytest.approx(found.objective, rel=1e-12)
+    assert kkt_error(problem, found.x, found.multipliers).error <= 1e-8
+    motion = motion_at(problem, spline, found.x, spline.phase)
+    human = motion.agents[0]
+    bend, flexion = (human.tau[:, human.joint_names.index(f"human_{joint}")] for joint in ("Q1", "Q2"))
+    integrand = (np.maximum(-flexion, 0.0) / 170.0) ** 2 + (bend / 408.0) ** 2
+    assert terms["spine"] == pytest.approx(np.trapezoid(integrand, motion.time), rel=1e-12)
+    other = Ipopt(problem).solve(found.x, deadline=NEVER)
+    assert other.objective == pytest.approx(found.objective, rel=1e-6)
+    assert solved(5000.0)[2]["spine"] < terms["spine"]

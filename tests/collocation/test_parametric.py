@@ -74,13 +74,14 @@ def test_optimum_moves_as_it_does_when_solved_again(solved: Solved, name: str) -
 
 def test_the_objective_rises_by_the_terms_whose_weights_rise() -> None:
     """Envelope theorem: dJ by the weight of a term is its unweighted integral, here by Pinocchio."""
-    scenario = load_scenario("table5_near", {"objective.preset": "natural", "solver.starts": 1, "solver.intervals": 12})
+    changes = {"objective.preset": "natural", "objective.spine_weight": 200.0, "solver.starts": 1}
+    scenario = load_scenario("table5_near", {**changes, "solver.intervals": 12})
     candidate = find_lift(Session(scenario, SolverCache())).best
     problem, result, step = candidate.problem, candidate.result, 1e-3
     optimum = Optimum(problem, result.x, result.multipliers)
     spline = candidate.spline
     terms = objective_terms(problem, motion_at(problem, spline, result.x, spline.phase))
-    for name in ("range", "tilt", "acceleration", "force"):
+    for name in ("range", "tilt", "acceleration", "force", "spine"):
         sides = (_at(problem, **{f"{name}_weight": change}) for change in (-step, step))
         assert optimum.tangent(*sides, step).objective == pytest.approx(terms[name], rel=1e-6)
 

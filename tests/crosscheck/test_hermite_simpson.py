@@ -11,11 +11,13 @@ import pytest
 
 import liftopt as lo
 from liftopt.collocation.flat_hand import flat_hand_rows
+from liftopt.collocation.soles import sole_rows
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson
-from liftopt.crosscheck.holds import FORCE_UNIT, MOMENT_UNIT
-from liftopt.crosscheck.instant import Coordinates, instant
+from liftopt.crosscheck.holds import FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT, FORCE_UNIT, MOMENT_UNIT
+from liftopt.crosscheck.instant import instant
 from liftopt.crosscheck.integrand import integrand
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
+from liftopt.multibody.standing import ground_in_base
 from liftopt.multibody.trajectory import (
     AgentTrajectory,
     agent_trajectory,
@@ -30,6 +32,7 @@ from liftopt.types import Array
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 STATES = 5
+WHOLE = {"objective.preset": "natural", "human.body": "whole"}
 FLAT = {"objective.preset": "natural", "human.contact": "flat", "human.friction": 0.5}
 
 
@@ -40,7 +43,7 @@ def solution(solved: Callable[..., Any]) -> Any:
 
 @pytest.fixture(scope="module")
 def natural(solved: Callable[..., Any]) -> Any:
-    return solved("table5_paper", *CHEAP, "objective.preset=natural").solution
+    return solved("table5_paper", *CHEAP, "objective.preset=natural", "objective.spine_weight=300").solution
 
 
 @pytest.fixture(scope="module")
@@ -61,45 +64,55 @@ def still(solved: Callable[..., Any]) -> MeshStudy:
 
 @pytest.mark.parametrize(
     ("keys", "free"),
-    [({}, [0, 1, 2, 4, 5]), (FLAT, [0, 1, 2, 3, 4, 5]), (FLAT | {"robot.grasp": "point"}, [0, 1, 2, 3, 4, 5])],
-    ids=["two points", "a flat hand and a gripper", "a flat hand and a point"],
+    [
+        ({}, [0, 1, 2, 4, 5]),
+        (FLAT, [0, 1, 2, 3, 4, 5]),
+        (FLAT | {"robot.grasp": "point"}, [0, 1, 2, 3, 4, 5]),
+        (WHOLE, [0, 1, 2, 3, 4, 5]),
+        (WHOLE | FLAT | {"human.hands": ["left"]}, [0, 1, 2, 3, 4, 5]),
+    ],
+    ids=["two points", "a flat hand and a gripper", "a flat hand and a point", "two hands", "a flat left hand"],
 )
 def test_equations_are_those_of_pinocchio_in_double_precision(keys, free):
     scenario = lo.load_scenario("table5_paper", keys)
     agents, lifted, task = agents_of(scenario), object_of(scenario), task_of(scenario)
     written, rng = instant(agents, lifted, task), np.random.default_rng(4)
     at = written.coordinates
-    assert (at.n_q, at.n_joints, list(at.unlocked)) == (17 + len(free), 17, free)
+    n = sum(len(agent.posture) for agent in agents)
+    assert (at.n_q, at.n_joints, list(at.unlocked)) == (n + len(free), n, free)
     q, v, a = rng.uniform(-1.0, 1.0, (3, STATES, at.n_q))
     force = rng.uniform(-50.0, 50.0, (STATES, at.n_force))
-    moment, moments = rng.uniform(-5.0, 5.0, (STATES, at.n_moment)), np.zeros((STATES, 2, 3))
+    moment, moments = rng.uniform(-5.0, 5.0, (STATES, at.n_moment)), np.zeros((STATES, at.grasps, 3))
     moments[:, at.turning] = moment.reshape(STATES, -1, 3)
     pose, rate, second = np.zeros((3, STATES, 6))
     for six, part in ((pose, q), (rate, v), (second, a)):
         six[:, at.unlocked] = part[:, at.n_joints :]
     table = object_trajectory(lifted, pose, rate, second, force, moments)
-    tau, first, held = np.zeros((STATES, at.n_joints)), 0, []
+    tau, first, grasp, held, feet = np.zeros((STATES, at.n_joints)), 0, 0, [], []
+    forces, gaps = force.reshape(STATES, -1, 3), np.asarray(written.closure(q.T)).T.reshape(STATES, -1, 3)
     for i, agent in enumerate(agents):
-        own, f, m = slice(first, first + at.joints[i]), force[:, 3 * i : 3 * i + 3], moments[:, i]
-        arm = agent_trajectory(agent, q[:, own], v[:, own], a[:, own], f, m)
-        tau[:, own], first = arm.tau[:, arm.moving], own.stop
-        gap = np.asarray(written.closure(q.T))[3 * i : 3 * i + 3].T
-        np.testing.assert_allclose(gap, arm.p_world_hold - table.grasp_position[:, i], atol=1e-12)
-        held.append(_room(arm, attitude(pose[:, 3:])[0]))
+        own, grasps = slice(first, first + at.joints[i]), slice(grasp, grasp + len(agent.grasps))
+        body = agent_trajectory(agent, q[:, own], v[:, own], a[:, own], forces[:, grasps], moments[:, grasps])
+        tau[:, own], first, grasp = body.tau[:, body.moving], own.stop, grasps.stop
+        np.testing.assert_allclose(gaps[:, grasps], body.grasp_position - table.grasp_position[:, grasps], atol=1e-12)
+        held += [_room(body, hand, attitude(pose[:, 3:])[0]) for hand in range(len(agent.grasps))]
+        if agent.stance is not None:
+            ground, units = ground_in_base(agent, body), (FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT)
+            feet += [rows.room(ground) / unit for rows, unit in zip(sole_rows(agent.stance), units, strict=True)]
     y = np.hstack([q, v, a, force, moment, tau]).T
     np.testing.assert_allclose(np.asarray(written.dynamics(y)), 0.0, atol=1e-10)
     np.testing.assert_allclose(np.asarray(written.balance(y)).T, table.wrench, atol=1e-10)
-    np.testing.assert_allclose(np.asarray(written.hold(y)).T, np.hstack(held), atol=1e-10)
+    np.testing.assert_allclose(np.sort(np.asarray(written.hold(y)).T), np.sort(np.hstack([*held, *feet])), atol=1e-10)
 
 
-def _room(arm: AgentTrajectory, turn: Array) -> Array:
+def _room(body: AgentTrajectory, hand: int, turn: Array) -> Array:
     """Return what a hold leaves of its limits, by what the verification of a solution takes."""
-    (grasp,), back, left = arm.grasps, turn.swapaxes(1, 2), [np.empty((len(turn), 0))]
+    grasp, back, left = body.grasps[hand], turn.swapaxes(1, 2), [np.empty((len(turn), 0))]
     if grasp.moments:
-        used = np.linalg.norm(arm.grasp_moment[:, 0], axis=1) / grasp.max_moment
-        angle = angle_between(arm.grip_rotation[:, 0], turn)
+        used = np.linalg.norm(body.grasp_moment[:, hand], axis=1) / grasp.max_moment
+        angle = angle_between(body.grip_rotation[:, hand], turn)
         left.append(np.stack([1 - used**2, np.cos(angle) - np.cos(grasp.max_turn)], axis=1))
-    wrench = np.hstack([turned(back, arm.load), turned(back, arm.grasp_moment[:, 0])])
+    wrench = np.hstack([turned(back, body.grasp_force[:, hand]), turned(back, body.grasp_moment[:, hand])])
     units = {"friction": FORCE_UNIT, "pressure": MOMENT_UNIT}
     return np.hstack([*left, *(rows.room(wrench) / units[rows.name] for rows in flat_hand_rows(grasp))])
 
@@ -160,12 +173,19 @@ def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models
     assert np.all(arms.a[[0, -1]] == 0.0)
 
 
-def test_integrand_of_a_natural_lift_adds_up_to_its_objective(natural: Any) -> None:
+@pytest.mark.parametrize("body", [(), ("human.body=whole",)], ids=["an arm", "a whole body"])
+def test_integrand_of_a_natural_lift_adds_up_to_its_objective(
+    solved: Callable[..., Any], body: tuple[str, ...]
+) -> None:
     """By the trapezoid rule over the knots of the spline's own solution, torques and angles on both sides."""
-    agents, task = agents_of(natural.scenario), task_of(natural.scenario)
-    at = Coordinates.of(agents, task)
-    values = np.asarray(ca.DM(integrand(agents, task, at, ca.DM(points_of(natural, at).y.T)))).ravel()
-    assert np.trapezoid(values, natural.time) == pytest.approx(natural.objective, rel=1e-9)
+    lift = solved("table5", *CHEAP, "objective.spine_weight=300", *body).solution
+    agents, task = agents_of(lift.scenario), task_of(lift.scenario)
+    written = instant(agents, object_of(lift.scenario), task)
+    at = written.coordinates
+    points = points_of(lift, at)
+    tilts = written.tilt.map(len(lift.time))(points.q.T)
+    values = np.asarray(ca.DM(integrand(agents, task, at, ca.DM(points.y.T), tilts))).ravel()
+    assert np.trapezoid(values, lift.time) == pytest.approx(lift.objective, rel=1e-9)
 
 
 def test_both_optima_of_a_natural_lift_agree_at_the_limit_to_a_thousandth(natural: Any) -> None:

@@ -65,7 +65,7 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "start": {"height": 0.9, "human_distance": 0.40, "pitch_deg": 0.0},
             "end": {"height": 1.4, "human_distance": 0.40, "pitch_deg": 0.0},
         },
-        "objective": {"preset": "natural", **NATURAL["objective"]},
+        "objective": {"preset": "natural", "spine_weight": 0.0, **NATURAL["objective"]},
         "limits": {
             "table_roll_deg": 10.0,
             "table_pitch_deg": 10.0,

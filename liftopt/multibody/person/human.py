@@ -13,6 +13,7 @@ from liftopt.multibody.person.anthropometry import link_lengths
 from liftopt.multibody.person.bodies import human_bodies
 from liftopt.multibody.person.comfort import human_comfort
 from liftopt.multibody.person.human_shapes import human_shapes
+from liftopt.multibody.person.lumbar_levers import spine_shares
 from liftopt.multibody.person.range_of_motion import RANGES
 from liftopt.multibody.person.strength import torque_limit
 from liftopt.multibody.person.subject import Sex, Subject
@@ -102,6 +103,7 @@ def human_agent(subject: Subject, urdf: str | None = None, *, name: str = NAME, 
         posture=np.array([radians(POSTURE_DEG.get(item.joint, 0.0)) for item in RANGES]),
         workspace=HalfSpace(ahead, float(ahead @ (place.x, place.y, 0.0))),
         comfort=human_comfort(),
+        spine=spine_shares([item.joint for item in RANGES]),
     )
 
 
