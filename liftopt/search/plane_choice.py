@@ -32,6 +32,8 @@ TURN = 0.85
 FLIP, THROUGH = -0.1, 1e4
 # What it costs at a knot to pass on the other side of what stands around than the object: so much, times 1 - cosine.
 BESIDE = 2.0
+# And for an arm, on another side of the object than outside the face that its hand holds.
+OUTSIDE = 20.0
 # Depth costs so much more at the ends where the task places the object, and it can hardly yield.
 FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
@@ -98,7 +100,11 @@ def choose_planes(
         one, other = solids.ends[p]
         if solids.bodies[one].part == solids.bodies[other].part == WORLD:
             continue  # both stand: no motion keeps them apart
-        normals = _normals(solids, found, p, options, beside.get(int(other)))
+        side = beside.get(int(other))
+        if p in solids.outward:
+            box = one if solids.bodies[one].part == len(solids.team.agents) else other
+            side = np.asarray(found.placements[:, box, :3, :3] @ solids.outward[p])
+        normals = _normals(solids, found, p, options, side, OUTSIDE if p in solids.outward else BESIDE)
         if p in options.crossing and solids.bodies[one].part == len(solids.team.agents):
             beside[int(other)] = normals
         between = rows[solids.bodies[one], solids.bodies[other]]
@@ -170,9 +176,14 @@ def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: 
 
 
 def _normals(
-    solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOptions, beside: Array | None = None
+    solids: TeamSolids,
+    found: SolidDistances,
+    p: int,
+    options: PlaneOptions,
+    beside: Array | None = None,
+    price: float = BESIDE,
 ) -> Array:
-    """Return a unit normal (K, 3) of a pair at every knot; those who hold the object pass ``beside`` as it does."""
+    """Return a unit normal (K, 3) of a pair at every knot; to be far from ``beside`` (K, 3) has a price."""
     distance, exact = found.distance[:, p], found.normal[:, p]
     asked = options.of(solids.pairs[p])
     other = solids.ends[p, 1]
@@ -193,7 +204,7 @@ def _normals(
         cost[[0, -1]] *= FIXED
     cost = np.minimum(cost, 1e6)
     if beside is not None:
-        cost += BESIDE * (1.0 - np.einsum("kda,ka->kd", directions, beside))
+        cost += price * (1.0 - np.einsum("kda,ka->kd", directions, beside))
     first = _cheapest(cost, directions)
     if p in options.avoided:
         chosen = directions[np.arange(len(first)), first]
