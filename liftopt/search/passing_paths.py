@@ -18,7 +18,7 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.separating_planes import WORLD
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.transfer import nearest_controls
-from liftopt.search.held_faces import is_of_an_arm
+from liftopt.search.holder_sides import is_of_an_arm
 from liftopt.search.inverse_kinematics import FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.search.moves import quintic
 from liftopt.search.plane_choice import NEAR

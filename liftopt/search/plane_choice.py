@@ -32,8 +32,8 @@ TURN = 0.85
 FLIP, THROUGH = -0.1, 1e4
 # What it costs at a knot to pass on the other side of what stands around than the object: so much, times 1 - cosine.
 BESIDE = 2.0
-# And for an arm, on another side of the object than outside the face that its hand holds.
-OUTSIDE = 20.0
+# And for who holds the object, on another side of it than where arms, legs and trunk belong.
+OFF_SIDE = {"arm": 20.0, "body": 2.0}
 # Depth costs so much more at the ends where the task places the object, and it can hardly yield.
 FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
@@ -100,11 +100,7 @@ def choose_planes(
         one, other = solids.ends[p]
         if solids.bodies[one].part == solids.bodies[other].part == WORLD:
             continue  # both stand: no motion keeps them apart
-        side = beside.get(int(other))
-        if p in solids.outward:
-            box = one if solids.bodies[one].part == len(solids.team.agents) else other
-            side = np.asarray(found.placements[:, box, :3, :3] @ solids.outward[p])
-        normals = _normals(solids, found, p, options, side, OUTSIDE if p in solids.outward else BESIDE)
+        normals = _normals(solids, found, p, options, beside.get(int(other)))
         if p in options.crossing and solids.bodies[one].part == len(solids.team.agents):
             beside[int(other)] = normals
         between = rows[solids.bodies[one], solids.bodies[other]]
@@ -176,14 +172,9 @@ def _support(solids: TeamSolids, found: SolidDistances, s: int, k: int, normal: 
 
 
 def _normals(
-    solids: TeamSolids,
-    found: SolidDistances,
-    p: int,
-    options: PlaneOptions,
-    beside: Array | None = None,
-    price: float = BESIDE,
+    solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOptions, beside: Array | None = None
 ) -> Array:
-    """Return a unit normal (K, 3) of a pair at every knot; to be far from ``beside`` (K, 3) has a price."""
+    """Return a unit normal (K, 3) of a pair at every knot; those who hold the object pass ``beside`` as it does."""
     distance, exact = found.distance[:, p], found.normal[:, p]
     asked = options.of(solids.pairs[p])
     other = solids.ends[p, 1]
@@ -204,7 +195,9 @@ def _normals(
         cost[[0, -1]] *= FIXED
     cost = np.minimum(cost, 1e6)
     if beside is not None:
-        cost += price * (1.0 - np.einsum("kda,ka->kd", directions, beside))
+        cost += BESIDE * (1.0 - np.einsum("kda,ka->kd", directions, beside))
+    if p in solids.sides:
+        cost += _off_side(solids, found, p, directions)
     first = _cheapest(cost, directions)
     if p in options.avoided:
         chosen = directions[np.arange(len(first)), first]
@@ -214,6 +207,14 @@ def _normals(
         alike = (np.einsum("kda,ca->kdc", directions, passed) > SAME_SIDE).any(axis=2)
         first = _cheapest(cost + THROUGH * alike, directions)
     return directions[np.arange(len(first)), first]
+
+
+def _off_side(solids: TeamSolids, found: SolidDistances, p: int, directions: Array) -> Array:
+    """Return what each direction (K, D) costs for being off the side of the object where its holder's part belongs."""
+    side = solids.sides[p]
+    box = solids.ends[p, 0 if side.object_is_first else 1]
+    normal = found.placements[:, box, :3, :3] @ side.normal
+    return np.asarray(OFF_SIDE[side.kind] * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
 
 
 def _is_placed(solids: TeamSolids, p: int) -> bool:

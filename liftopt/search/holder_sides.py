@@ -1,12 +1,15 @@
-"""On which side of the object the arms are that hold it: outside the face that their hand lies on.
+"""On which side of the object parts of those who hold it belong.
 
-A hand that holds an object by its side leaves its forearm beside that side; where the two overlap, that is the way out,
-although another one may be shorter. A hand at an edge may come from either face, so nothing is known of its arm.
+A hand that holds an object by its side leaves its forearm outside that side; where the two overlap, that is the way
+out, although another one may be shorter. A hand at an edge may come from either face, so nothing is known of its arm.
+Legs and trunk are behind what is held.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -19,13 +22,27 @@ from liftopt.types import Array
 ON_FACE = 1e-3  # [m]
 
 
-def outward_normals(
-    team: Team, solids: Sequence[Solid], bodies: Sequence[Body], ends: npt.NDArray[np.int64]
-) -> dict[int, Array]:
-    """Return the outward normal (3,) of the held face, in the object's axes, by number of the pair of arm and object.
+@dataclass(frozen=True)
+class HolderSide:
+    """Where a part of a holder belongs.
 
-    It points from the second solid of the pair to the first. Only arms of those who have several are in it: of others
-    the trunk moves with the arm.
+    Attributes:
+        normal: (3,) unit vector from the second solid of the pair to the first, in the object's axes.
+        kind: ``"arm"``, or legs and trunk, ``"body"``.
+        object_is_first: whether the object is the first solid of the pair.
+    """
+
+    normal: Array
+    kind: Literal["arm", "body"]
+    object_is_first: bool
+
+
+def holder_sides(
+    team: Team, solids: Sequence[Solid], bodies: Sequence[Body], ends: npt.NDArray[np.int64]
+) -> dict[int, HolderSide]:
+    """Return what is known of the sides, by number of the pair of a holder's part and the object.
+
+    It is known of those who have several arms, and stand.
 
     Args:
         team: who holds what.
@@ -33,19 +50,28 @@ def outward_normals(
         bodies: that carry them.
         ends: (P, 2) numbers of the solids of each pair.
     """
-    found: dict[int, Array] = {}
-    own, held = len(team.agents), {}
-    for p, pair in enumerate(ends.tolist()):
-        for sign, (arm, box) in ((1.0, pair), (-1.0, pair[::-1])):
-            body = bodies[arm]
-            if bodies[box].part != own or not 0 <= body.part < own or solids[box].kind != "box":
-                continue
-            if body not in held:
-                held[body] = held_by(team, body)
-            outward = _face(team, solids[box], held[body])
-            if outward is not None:
-                found[p] = sign * outward
+    found: dict[int, HolderSide] = {}
+    own = len(team.agents)
+    known: dict[Body, tuple[Array, Literal["arm", "body"]] | None] = {}
+    for p, (one, other) in enumerate(ends.tolist()):
+        first = bodies[one].part == own
+        part, box = (other, one) if first else (one, other)
+        body = bodies[part]
+        if bodies[box].part != own or not 0 <= body.part < own or solids[box].kind != "box":
+            continue
+        if body not in known:
+            known[body] = _side_of(team, body, solids[box])
+        if (side := known[body]) is not None:
+            found[p] = HolderSide(-side[0] if first else side[0], side[1], first)
     return found
+
+
+def _side_of(team: Team, body: Body, box: Solid) -> tuple[Array, Literal["arm", "body"]] | None:
+    agent = team.agents[body.part]
+    if is_of_an_arm(team, body):
+        outward = _face(team, box, held_by(team, body))
+        return None if outward is None else (outward, "arm")
+    return None if agent.stance is None else (-agent.T_world_base[:3, 0], "body")
 
 
 def is_of_an_arm(team: Team, body: Body) -> bool:
