@@ -14,13 +14,13 @@ import os
 import platform
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import get_args
 
 from liftopt.collocation.codegen.kernels import Builder, load_kernels
 from liftopt.collocation.codegen.simd_kernels import PROCESSORS, load_simd_kernels
 from liftopt.collocation.dynamics import Topology
 from liftopt.collocation.problem import Team, kernel_requests
+from liftopt.multibody.table import lifted_table
 from liftopt.scenario.agents import GRASPS
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
@@ -40,22 +40,24 @@ def ship(folder: str, every_processor: bool = False) -> bool:
     os.environ["LIFTOPT_CACHE"] = folder
     processors = PROCESSORS if every_processor and platform.machine() == "x86_64" else (None,)
     whole = True
-    for requests in _requests():
+    for requests in shipped_requests():
         whole = all(kernel.compiled for kernel in load_kernels(requests, _print)) and whole
         for extensions in processors:
             whole = load_simd_kernels(requests, _print, extensions) is not None and whole
     return whole
 
 
-def _requests() -> Iterator[list[Request]]:
+def shipped_requests() -> Iterator[list[Request]]:
     """Give what to generate kernels from, a team at a time: of one arm each, and of a whole body with an object."""
     for grasp in get_args(GRASPS):
         yield _of_team(f"human.grasp={grasp}", f"robot.grasp={grasp}")
     yield _of_team("human.body=whole")
     scenario = load_scenario(changes=["human.body=whole"])
-    agents, lifted = agents_of(scenario), object_of(scenario)
+    agents = agents_of(scenario)
     for count in range(1, MOST_GRASPS + 1):
-        held = replace(lifted, grasp_frames=(lifted.grasp_frames[0],) * count)
+        # Each grasp has a frame of its own: one frame in two places would give both the same place in the kernel.
+        points = {f"hand_{n}": (0.0, 0.0, 0.0) for n in range(count)}
+        held = lifted_table(mass=1.0, depth=0.3, width=0.4, height=0.2, grasps=points)
         yield kernel_requests(agents, held)[-1:]
 
 
