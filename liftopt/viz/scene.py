@@ -23,6 +23,7 @@ from liftopt.viz.scene_gripper import gripper_parts
 from liftopt.viz.scene_mesh import Mesh, Ring, block, tube
 from liftopt.viz.scene_part import GROUND, Colour, Part
 from liftopt.viz.scene_person import SHIRT, hand_parts, person_parts
+from liftopt.viz.scene_pressure import pressure_body, pressure_part
 from liftopt.viz.scene_sawyer import sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
@@ -141,7 +142,10 @@ def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
     if agent.kind == "person":
         subject = subject_in(solution, agent.name)
         bodies = PersonBodies.of(agent)
-        figure = [part.placed(world_base) for part in person_parts(bodies, subject, _shirt(cast, agent))]
+        figure = person_parts(bodies, subject, _shirt(cast, agent))
+        if pressure_body(agent.name) in cast.playback.bodies:
+            figure.append(pressure_part(agent.name, colour_of(solution.agents, agent)))
+        figure = [part.placed(world_base) for part in figure]
         hands = (hand_parts(arm.hand, subject, arm.side) for arm in bodies.arms if arm.hand)
         return figure + [part for hand in hands for part in hand]
     if cast.sawyer is None:
