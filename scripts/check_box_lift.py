@@ -18,8 +18,9 @@ import pinocchio as pin
 
 from liftopt.ergonomics.motion import motion_of
 from liftopt.errors import LiftoptError
-from liftopt.lab.mocap.from_markers import Load, read_recording, recorded_lift
-from liftopt.lab.mocap.marker_map import load_marker_map
+from liftopt.lab.mocap.from_markers import read_recording, recorded_lift
+from liftopt.lab.mocap.loads import Load
+from liftopt.lab.mocap.map_file import load_marker_map
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 from liftopt.scenario.keys import changes_in

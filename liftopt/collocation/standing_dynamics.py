@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from liftopt.collocation import spatial_symbols, standing_knot, standing_place, tree_dynamics
+from liftopt.collocation import spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics
 from liftopt.collocation.dynamics import KnotFunctions, Topology, clean_rotation, symbolic_model
 from liftopt.collocation.standing_knot import StandingKnot
 from liftopt.collocation.standing_place import in_base_axes, place_parameters
@@ -69,7 +69,7 @@ class StandingTopology(WrenchTopology):
         """Return a digest of all that a kernel is generated from; equal signatures share a kernel."""
         digest = hashlib.sha256(Topology.signature(self).encode())
         digest.update(f"{self.trunk} {self.up.tolist()}".encode())
-        for part in (spatial_symbols, standing_knot, standing_place, tree_dynamics):
+        for part in (spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics):
             digest.update(Path(str(part.__file__)).read_bytes())
         digest.update(Path(__file__).read_bytes())
         return digest.hexdigest()

@@ -6,7 +6,6 @@ each derivative belongs. Joint k is above joint j, or is j, throughout.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ import pinocchio as pin
 
 from liftopt.collocation.dynamics import roll_pitch_yaw
 from liftopt.collocation.spatial_symbols import Force
+from liftopt.collocation.standing_hand import Hand
 from liftopt.collocation.standing_place import PLACE_SIZE, base_of
 from liftopt.collocation.tree_dynamics import Tree
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
@@ -23,39 +23,6 @@ from liftopt.types import Array
 HAND_OUTPUTS, GROUND_OUTPUTS = 12, 6
 POINT, OWN, COSINE = slice(0, 3), slice(3, 12), 5
 GRIP_SIZE = 9  # parameters of each hand, after those of the model and of the place
-
-
-@dataclass(frozen=True)
-class _Hand:
-    """A hand and its grasp on symbols, along the hub's axes.
-
-    Attributes:
-        frame: of the joint that carries it.
-        point: (3,) grasp point.
-        force, moment: (3,) that it exerts on the object.
-        pull: (3,) weight of the point's position; ``alike`` that of the cosine.
-        grip, aim: (3, 3) grip axes and the object's axes.
-        reach: by joint above it, slope (3,) of the point; ``swing`` of the point's velocity by the weights, and
-            ``tilt`` of the angular velocity by the weights.
-    """
-
-    joint: int
-    point: Any
-    force: Any
-    moment: Any
-    pull: Any
-    alike: Any
-    grip: Any
-    aim: Any
-    reach: dict[int, Any]
-    swing: dict[int, Any]
-    tilt: dict[int, Any]
-
-    def turn(self, aim: Any) -> Any:
-        """Return the slope (3,) of the cosine by a turn of the hand, for axes of the object."""
-        import casadi as ca
-
-        return sum(ca.cross(self.grip[:, c], aim[:, c]) for c in range(3)) / 2
 
 
 class StandingKnot:
@@ -133,10 +100,7 @@ class StandingKnot:
         tree, found, others = self.tree, ca.SX(3 * self.n, 1), ca.SX(0)
         for j in tree.joints:
             by_position, *by_rates = tree.slope(j)
-            for hand in self._carried(j):
-                by_position += ca.dot(hand.swing[j], hand.force) + ca.dot(hand.tilt[j], hand.moment)
-                by_position += ca.dot(hand.reach[j], hand.pull)
-                by_position += hand.alike * ca.dot(tree.axis[j].angular, hand.turn(hand.aim))
+            by_position = sum((hand.slope(j) for hand in self._carried(j)), by_position)
             for order, slope in enumerate((by_position, *by_rates)):
                 found[order * self.n + self._at(j)] = slope
         for i, hand in enumerate(self.hands):
@@ -206,7 +170,7 @@ class StandingKnot:
         for j in tree.joints:
             own, (by_position, by_rate, momentum) = self._at(j), self._columns(j)
             by_velocity, by_acceleration, rates = tree.bend(j)
-            bent = self._bent(j)
+            bent = sum((hand.bent(j) for hand in self._carried(j)), ca.SX(3, 1))
             for k in tree.path(j):
                 above, axis, moved, weighted = self._at(k), tree.axis[k], tree.moved[k], tree.weighted[k]
                 found[above, own] = (
@@ -233,18 +197,6 @@ class StandingKnot:
         found[3 * n :, 3 * n :] = ca.hessian(others, ca.vertcat(self.held, self.angles))[0]
         return ca.triu(ca.sparsify(found))
 
-    def _bent(self, j: int) -> Any:
-        """Return the moment (3,) by which the slope by joint j of what the hands add changes with joints above."""
-        import casadi as ca
-
-        bent, axis = ca.SX(3, 1), self.tree.axis[j].angular
-        for hand in self._carried(j):
-            bent += ca.cross(hand.swing[j], hand.force) + ca.cross(hand.tilt[j], hand.moment)
-            bent += ca.cross(hand.reach[j], hand.pull)
-            product = ca.mtimes(hand.grip, hand.aim.T)
-            bent += hand.alike / 2 * (ca.mtimes(product, axis) - ca.trace(product) * axis)
-        return bent
-
     def _pressed(self, j: int) -> Any:
         """Return the moment (3,) by which the load on joint j changes where it moves the hands' forces."""
         import casadi as ca
@@ -255,23 +207,15 @@ class StandingKnot:
         by_position, *by_rates = self.tree.column(j)
         return Force(by_position.moment + self._pressed(j), by_position.force), by_rates[0], by_rates[1]
 
-    def _hand(self, model: Any, i: int, frame: int, turn: Any) -> _Hand:
+    def _hand(self, model: Any, i: int, frame: int, turn: Any) -> Hand:
         import casadi as ca
 
-        tree, joint = self.tree, int(self.structure.frames[frame].parentJoint)
-        placed, whole = tree.placed[joint], tree.weight[joint]
+        joint = int(self.structure.frames[frame].parentJoint)
+        placed, (force, moment) = self.tree.placed[joint], map(self._to_hub, self._wrench(i))
         point = placed.origin + ca.mtimes(placed.rotation, model.frames[frame].placement.translation)
-        force, moment = map(self._to_hub, self._wrench(i))
-        reach, swing, tilt = {}, {}, {}
-        for j in tree.path(joint):
-            axis, above = tree.axis[j], tree.weight[tree.parents[j]]
-            reach[j] = axis.at(point)
-            apart = whole.at(point) - above.at(point)
-            swing[j] = ca.cross(above.angular, reach[j]) + ca.cross(axis.angular, apart)
-            tilt[j] = ca.cross(axis.angular, whole.angular - above.angular)
         pull, alike = self._to_hub(self.weights[i][POINT]), self.weights[i][COSINE]
         grip, aim = ca.mtimes(placed.rotation, turn), self._to_hub(self.attitude)
-        return _Hand(joint, point, force, moment, pull, alike, grip, aim, reach, swing, tilt)
+        return Hand.of(self.tree, joint, point, force, moment, pull, alike, grip, aim)
 
     def _own(self, i: int) -> Any:
         """Return a hand's outputs but the first three: of them the joints move the cosine alone."""
@@ -287,7 +231,7 @@ class StandingKnot:
         """Return force and moment of a hand, world axes."""
         return self.held[WRENCH_SIZE * i :][:3], self.held[WRENCH_SIZE * i + 3 :][:3]
 
-    def _carried(self, j: int) -> list[_Hand]:
+    def _carried(self, j: int) -> list[Hand]:
         return [hand for hand in self.hands if j in hand.reach]
 
     def _at(self, j: int) -> int:

@@ -16,8 +16,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pinocchio as pin
 
+from liftopt.collocation.dynamics import STRUCTURAL_ZERO
 from liftopt.collocation.spatial_symbols import Force, Mass, Motion, Placed, Turning
 
 
@@ -173,7 +175,7 @@ def _hub(structure: pin.Model) -> int:
         joint = children[joint][0]
     if not children[joint]:
         return children[0][0]
-    while structure.parents[joint] and not structure.jointPlacements[joint].translation.any():
+    while structure.parents[joint] and np.abs(structure.jointPlacements[joint].translation).max() < STRUCTURAL_ZERO:
         joint = int(structure.parents[joint])
     return joint
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from liftopt.commands.terminal import captured, printing
+from liftopt.errors import NO_VALUE, InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,7 +25,8 @@ def add_mocap_parser(commands: Any) -> None:
         "mocap",
         help="joint angles and torques of a recorded lift, from its markers",
         description="Read the markers of a C3D or TRC file, scale the person, follow the markers with the "
-        "13-joint model, and write recorded.nc. The file read is never changed.",
+        "model of trunk and right arm or of the whole person, as the mapping says, and write recorded.nc. The file "
+        "read is never changed.",
         allow_abbrev=False,
     )
     parser.add_argument("recording", metavar="FILE", help="a C3D or TRC file")
@@ -33,9 +35,14 @@ def add_mocap_parser(commands: Any) -> None:
         required=True,
         dest="mapping",
         metavar="MAP",
-        help="a mapping in TOML, or one that is shipped: box_lift",
+        help="a mapping in TOML, or a shipped one: box_lift (trunk and right arm); of the whole body plug_in_gait, "
+        "biomech_57, or pose2sim (video)",
     )
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for recorded.nc")
+    parser.add_argument("--up", metavar="AXIS", help="axis of FILE that points up (default: as the mapping has it)")
+    parser.add_argument(
+        "--object-markers", metavar="A,B,C", help="markers of what is lifted (default: as the mapping has it)"
+    )
     parser.add_argument("--mass", type=float, metavar="KG", help="body mass of the person")
     parser.add_argument("--sex", choices=("male", "female"), help="whose segment data to use")
     parser.add_argument(
@@ -47,24 +54,31 @@ def add_mocap_parser(commands: Any) -> None:
     parser.add_argument(
         "--hand-force",
         metavar="FILE",
-        help="of the hand on the object: time, fx, fy, fz [s, N] in FILE's axes (CSV, MOT, STO), or of liftopt "
+        help="of the right hand on the object: time, fx, fy, fz [s, N] in FILE's axes (CSV, MOT, STO), or of liftopt "
         "forces; a CSV may name units: time [ms], fx [kN]",
     )
+    parser.add_argument("--hand-force-left", metavar="FILE", help="the same of the left hand of a whole person")
     parser.add_argument(
         "--hand-force-start",
         type=float,
         metavar="S",
-        help="when that series starts on FILE's clock (default: as it says)",
+        help="when these series start on FILE's clock (default: as they say)",
     )
     parser.add_argument(
         "--object-mass",
         type=float,
         metavar="KG",
         default=0.0,
-        help="estimate the hand's force from the object's motion",
+        help="estimate the hands' forces from the object's motion",
     )
     parser.add_argument(
         "--hand-share", type=float, metavar="0-1", default=0.5, help="of the right hand in that (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--hand-share-left",
+        type=float,
+        metavar="0-1",
+        help="of the left hand of a whole person (default: what the right one leaves)",
     )
     parser.add_argument(
         "--ignore",
@@ -90,23 +104,36 @@ def mocap(args: argparse.Namespace) -> str:
     Raises:
         InputError: a file, the mapping or an option is wrong.
     """
-    from liftopt.lab.mocap.from_markers import Load, read_recording, recorded_lift
-    from liftopt.lab.mocap.marker_map import Person, load_marker_map
+    from liftopt.lab.mocap.from_markers import read_recording, recorded_lift
+    from liftopt.lab.mocap.loads import Load
+    from liftopt.lab.mocap.map_file import load_marker_map
+    from liftopt.lab.mocap.marker_map import Person
     from liftopt.lab.mocap.recorded_file import save_recorded
     from liftopt.lab.mocap.trial_part import TrialPart, ignored_markers
     from liftopt.multibody.bounds import checked_number
 
     mapping = load_marker_map(args.mapping)
     given = {name: getattr(args, name) for name in ("mass", "sex", "stature") if getattr(args, name) is not None}
+    left = args.hand_share_left
     person = Person.checked(mapping.subject.plain() | given, "subject.")
+    changes: dict[str, Any] = {"subject": person} | ({"up": args.up} if args.up else {})
+    if args.object_markers:
+        labels = [label.strip() for label in args.object_markers.split(",")]
+        changes["segments"] = mapping.segments.changed(object=labels)
+    mapping = mapping.changed(**changes)
     load = Load(
-        measured=_measured(args, mapping.up),
+        measured=_measured(args, args.hand_force, mapping.up),
         mass=checked_number("--object-mass", args.object_mass, 0.0, 100.0, "kg"),
         share=checked_number("--hand-share", args.hand_share, 0.0, 1.0, "of the load"),
+        left_measured=_measured(args, args.hand_force_left, mapping.up),
+        left_share=None if left is None else checked_number("--hand-share-left", left, 0.0, 1.0, "of the load"),
     )
+    if mapping.body == "arm" and (args.hand_force_left or left is not None):
+        option = "--hand-force-left" if args.hand_force_left else "--hand-share-left"
+        raise InputError(option, NO_VALUE, f"{args.mapping} maps trunk and right arm only")
     part = TrialPart(args.start, args.end, ignored_markers(args.ignore))
     recording = read_recording(Path(args.recording))
-    lift = recorded_lift(recording, mapping.changed(subject=person), load, args.cutoff, part)
+    lift = recorded_lift(recording, mapping, load, args.cutoff, part)
     if args.lift is not None:
         lift = lift.of_lift(args.lift)
     save_recorded(lift, Path(args.out))
@@ -117,13 +144,13 @@ def mocap(args: argparse.Namespace) -> str:
     )
 
 
-def _measured(args: argparse.Namespace, up: str) -> HandForce | None:
+def _measured(args: argparse.Namespace, file: str | None, up: str) -> HandForce | None:
     from liftopt.lab.mocap.hand_force import read_hand_force
     from liftopt.multibody.bounds import checked_number
 
-    if not args.hand_force:
+    if not file:
         return None
-    series = read_hand_force(Path(args.hand_force), up)
+    series = read_hand_force(Path(file), up)
     if args.hand_force_start is None:
         return series
     start = checked_number("--hand-force-start", args.hand_force_start, -1e6, 1e6, "s")
@@ -164,9 +191,14 @@ def _print(lift: RecordedLift, out: str, console: Console) -> None:
     progress(
         "  "
         + ", ".join(f"L{i} {value:.3f}" for i, value in enumerate(vars(lengths).values(), start=1))
-        + " m (L1 by stature)"
+        + (" m" if lift.whole else " m (L1 by stature)")
     )
-    progress(f"Force of the hand: {lift.force_from}")
+    if lift.whole:
+        whole = lift.whole
+        progress(
+            f"  ankle {whole.ankle:.3f} (by stature), knee {whole.knee:.3f}, hip {whole.hip:.3f} m above the floor"
+        )
+    progress(f"Force of the {'hands' if lift.whole else 'hand'}: {lift.force_from}")
     if len(lift.lifts) > 1:
         progress(f"Lifts: {lift.lift_times()}" + ("" if lift.carried else "; choose one by --lift"))
     if lift.carried:

@@ -196,7 +196,8 @@ class HermiteSimpson:
         rows = self._rows(q, v, a, physical)
         g = ca.vertcat(*(ca.vec(row) for row, _, _ in rows))
         lower, upper = (np.concatenate([np.full(row[0].numel(), row[side]) for row in rows]) for side in (1, 2))
-        f = ca.mtimes(integrand(self.agents, self.task, self.at, physical), ca.DM(self._simpson))
+        tilts = self.instant.tilt.map(points)(q)
+        f = ca.mtimes(integrand(self.agents, self.task, self.at, physical, tilts), ca.DM(self._simpson))
         ipopt = dict(
             print_level=0, sb="yes", tol=TOLERANCE, constr_viol_tol=TOLERANCE, max_iter=max_iterations,
             max_wall_time=seconds, mu_init=1e-3, bound_push=1e-6, bound_frac=1e-6, bound_relax_factor=1e-10,
@@ -224,6 +225,7 @@ class HermiteSimpson:
         task, everywhere = self.task, self.n_points
         tolerance, unserved = task.balance_tolerance, None if self.at.turning else self.object.unserved_row()
         served = [r for r in range(OBJECT_SIZE) if tolerance > 0 or r != unserved]
+        tilts, leans = self.instant.tilt.map(everywhere)(q), [agent.lean for agent in self.agents if agent.lean]
         return [
             *((defect, 0.0, 0.0) for defect in self.defects(q, v, a)),
             (self.instant.dynamics.map(everywhere)(y) / TORQUE_UNIT, 0.0, 0.0),
@@ -232,6 +234,7 @@ class HermiteSimpson:
             (self.instant.grasp.map(everywhere)(y) / task.max_grasp_force**2, -np.inf, 1.0),
             (self.instant.hold.map(everywhere)(y), 0.0, np.inf),
             (self.instant.workspace.map(everywhere)(q), 0.0, np.inf),
+            *((tilts[row, :], -np.inf, 1.0 - np.cos(lean.most)) for row, lean in enumerate(leans)),
         ]
 
     def _bounds(self) -> tuple[Array, Array]:

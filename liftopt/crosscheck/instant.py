@@ -14,6 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 from liftopt.collocation.task import LiftTask
 from liftopt.crosscheck.holds import footing, room
@@ -98,6 +99,7 @@ class Instant:
         hold: y -> what the holds leave of their other limits, see ``room``, and then what the soles leave of theirs,
             see ``footing``; empty for grips at points of agents that do not stand.
         workspace: q -> (grasps with a half-space,) distance of the grasp point from its border [m].
+        tilt: q -> (agents with a trunk that leans,) 1 - cos of its angle to the vertical.
     """
 
     coordinates: Coordinates
@@ -107,6 +109,7 @@ class Instant:
     grasp: Any
     hold: Any
     workspace: Any
+    tilt: Any
 
 
 def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> Instant:
@@ -120,11 +123,13 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
     hands: list[Any] = []
     grips: list[Any] = []
     under: list[Any] = []
+    tilts: list[Any] = []
     for agent, (first, last) in zip(agents, pairwise(np.cumsum([0, *at.joints]).tolist()), strict=True):
         s, held = slice(first, last), slice(len(hands), len(hands) + len(agent.grasps))
         tau_needed, ground, points, axes = _agent(agent, q[s], v[s], a[s], forces[held], moments[held])
         needed.append(tau_needed)
         under += footing(agent.stance, ground) if agent.stance else []
+        tilts += _tilt(agent, q[s])
         hands += points
         grips += axes
     grasps, holders = zip(*((grasp, agent) for agent in agents for grasp in agent.grasps), strict=True)
@@ -149,6 +154,7 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
         ca.Function("grasp", [y], [ca.vertcat(*(ca.dot(f, f) for f in forces))]),
         ca.Function("hold", [y], ca.cse([ca.vertcat(*left, *under)])),
         ca.Function("workspace", [q], ca.cse([ca.vertcat(*distances)])),
+        ca.Function("tilt", [q], ca.cse([ca.vertcat(*tilts)])),
     )
 
 
@@ -183,6 +189,21 @@ def _agent(
     external = cpin.StdVec_Force([cpin.Force(load[:3], load[3:]) for load in loads])
     tau = cpin.rnea(model, model.createData(), q, v, a, external)
     return tau[6 * root :], tau[: 6 * root], points, grips
+
+
+def _tilt(agent: Agent, q: Any) -> list[Any]:
+    """Return 1 - cos of the angle of an agent's trunk to the vertical; nothing of one without."""
+    import liftopt.pinocchio_casadi as cpin
+
+    if agent.lean is None:
+        return []
+    reduced = agent.reduced()
+    trunk, upright = reduced.getJointId(agent.lean.joint), reduced.createData()
+    pin.forwardKinematics(reduced, upright, pin.neutral(reduced))
+    model = cpin.Model(reduced)
+    data = model.createData()
+    cpin.forwardKinematics(model, data, q)
+    return [1 - ca.dot(data.oMi[trunk].rotation[2, :].T, ca.DM(upright.oMi[trunk].rotation[2]))]
 
 
 def _object_equations(lifted: LiftedObject) -> Any:

@@ -15,8 +15,11 @@ from liftopt.multibody.agent import Agent, Comfort
 ROLL, PITCH = 3, 4
 
 
-def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: Any) -> Any:
-    """Return what the objective integrates (1, K) at points (n_y, K), unknowns as in ``Coordinates.sizes``."""
+def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: Any, tilts: Any) -> Any:
+    """Return what the objective integrates (1, K) at points (n_y, K), unknowns as in ``Coordinates.sizes``.
+
+    ``tilts`` (agents with a trunk that leans, K) are as ``Instant.tilt`` gives them.
+    """
     q, _, a, force, moment, tau = ca.vertsplit(points, np.cumsum([0, *at.sizes]).tolist())
     total = task.acceleration_weight * task.pace * ca.sum1(a**2) + task.force_weight * ca.sum1(force**2)
     # A moment takes a pair of contact forces, the hand's breadth apart.
@@ -36,6 +39,8 @@ def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: 
         if agent.comfort is not None and task.range_weight:
             total += task.range_weight * _discomfort(agent.comfort, q[own, :])
         first += n
+    for row, lean in enumerate(agent.lean for agent in agents if agent.lean is not None):
+        total += task.range_weight * (tilts[row, :] / (1.0 - np.cos(lean.room))) ** 2
     tilting = [at.n_joints + k for k, coordinate in enumerate(at.unlocked) if coordinate in (ROLL, PITCH)]
     return total + task.tilt_weight * ca.sum1((q[tilting, :] / TILT) ** 2) if tilting else total
 

@@ -14,7 +14,7 @@ from liftopt.collocation.flat_hand import flat_hand_rows
 from liftopt.collocation.soles import sole_rows
 from liftopt.crosscheck.hermite_simpson import HermiteSimpson
 from liftopt.crosscheck.holds import FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT, FORCE_UNIT, MOMENT_UNIT
-from liftopt.crosscheck.instant import Coordinates, instant
+from liftopt.crosscheck.instant import instant
 from liftopt.crosscheck.integrand import integrand
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
 from liftopt.multibody.standing import ground_in_base
@@ -173,12 +173,19 @@ def test_torques_of_the_second_transcription_are_pinocchios_at_its_points(models
     assert np.all(arms.a[[0, -1]] == 0.0)
 
 
-def test_integrand_of_a_natural_lift_adds_up_to_its_objective(natural: Any) -> None:
+@pytest.mark.parametrize("body", [(), ("human.body=whole",)], ids=["an arm", "a whole body"])
+def test_integrand_of_a_natural_lift_adds_up_to_its_objective(
+    solved: Callable[..., Any], body: tuple[str, ...]
+) -> None:
     """By the trapezoid rule over the knots of the spline's own solution, torques and angles on both sides."""
-    agents, task = agents_of(natural.scenario), task_of(natural.scenario)
-    at = Coordinates.of(agents, task)
-    values = np.asarray(ca.DM(integrand(agents, task, at, ca.DM(points_of(natural, at).y.T)))).ravel()
-    assert np.trapezoid(values, natural.time) == pytest.approx(natural.objective, rel=1e-9)
+    lift = solved("table5", *CHEAP, "objective.spine_weight=300", *body).solution
+    agents, task = agents_of(lift.scenario), task_of(lift.scenario)
+    written = instant(agents, object_of(lift.scenario), task)
+    at = written.coordinates
+    points = points_of(lift, at)
+    tilts = written.tilt.map(len(lift.time))(points.q.T)
+    values = np.asarray(ca.DM(integrand(agents, task, at, ca.DM(points.y.T), tilts))).ravel()
+    assert np.trapezoid(values, lift.time) == pytest.approx(lift.objective, rel=1e-9)
 
 
 def test_both_optima_of_a_natural_lift_agree_at_the_limit_to_a_thousandth(natural: Any) -> None:

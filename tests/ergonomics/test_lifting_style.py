@@ -17,6 +17,7 @@ from liftopt.ergonomics.posture import Posture
         ((30.0, 120.0, 95.0, 15.0, 35.0), "a squat", 120 / 140),
         ((0.0, 10.0, 60.0, 40.0, 90.0), "a stoop", 0.1),
         ((20.0, 60.0, 80.0, 20.0, 60.0), "a semi-squat", 0.5),
+        ((15.0, 45.0, 40.0, 5.0, 21.0), "a semi-squat", 0.75),  # the knees are hardly bent
         ((3.0, 5.0, 2.0, 0.0, 0.0), "upright", 1.0),
         ((0.0, 0.0, 0.0, 0.0, 0.0), "upright", 0.0),
         ((0.0, 0.0, 0.0, 45.0, 45.0), "a stoop", 0.0),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, sosfiltfilt
 
 from liftopt.errors import InputError
@@ -45,3 +46,11 @@ def low_pass(values: Array, rate: float, cutoff: float, filters: int = 1) -> Arr
                 reach = min(count - 1, max(SHORTEST - 1, int(rate / cutoff)))
                 filtered[first : last + 1, column] = sosfiltfilt(sections, flat[first : last + 1, column], padlen=reach)
     return filtered.reshape(values.shape)
+
+
+def angles_and_rates(
+    time: Array, q: Array, rate: float, cutoff: float, lower: Array, upper: Array
+) -> tuple[Array, Array, Array]:
+    """Return filtered angles and their rates; a filter overshoots a limit that held, by what is clipped here."""
+    spline = make_interp_spline(time, low_pass(q, rate, cutoff, filters=2), k=5)
+    return np.clip(spline(time), lower, upper), spline.derivative(1)(time), spline.derivative(2)(time)

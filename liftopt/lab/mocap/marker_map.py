@@ -1,24 +1,18 @@
-"""Which marker stands where: a TOML file that maps a laboratory's marker labels to segments and landmarks."""
+"""Which marker stands where on trunk and right arm: a laboratory's marker labels by landmark and segment."""
 
 from __future__ import annotations
 
-import os
-import tomllib
-from collections.abc import Iterable
-from pathlib import Path
+from collections.abc import Set
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from liftopt.errors import NO_VALUE, InputError
+from liftopt.errors import InputError
 from liftopt.files.entries import entry, number
 from liftopt.files.section import Section
-from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.lab.mocap.length_units import METRES
-from liftopt.lab.mocap.recording import TO_Z_UP, Recording
-from liftopt.lab.mocap.text_file import read_text
+from liftopt.lab.mocap.recording import TO_Z_UP
 
-SHIPPED = Path(__file__).parent / "maps"
 Labels = tuple[str, ...]
 if TYPE_CHECKING:
     Axis: TypeAlias = str
@@ -115,6 +109,7 @@ class MarkerMap(Section):
     """
 
     version: Annotated[Literal[1], Field(alias="schema", description="version of the mapping format")]
+    body: Annotated[Literal["arm"], entry("what the markers show of the person")] = "arm"
     up: Annotated[Axis, entry("axis of the recording that points up")]
     units: Annotated[Unit, entry("unit of length of the file, whatever the file states")] = ""
     landmarks: Landmarks
@@ -153,49 +148,11 @@ class MarkerMap(Section):
         labels = [label for group in self.by_segment().values() for label in group]
         return tuple(dict.fromkeys([*labels, *self.landmark("acromion_right")]))
 
+    def landmark_of(self, label: str) -> str:
+        """Return which landmark a marker is; empty if it is none."""
+        return next((name for name, labels in self.landmarks if label in labels), "")
 
-def shipped_maps() -> tuple[str, ...]:
-    """Return the names of the mappings that come with liftopt."""
-    return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
-
-
-def load_marker_map(source: str | Path) -> MarkerMap:
-    """Return the mapping of a TOML file, or the shipped one of that name.
-
-    Raises:
-        InputError: the file cannot be read, is not TOML, or is no mapping; the message names the key.
-    """
-    shipped = shipped_maps()
-    path = SHIPPED / f"{source}.toml" if source in shipped else Path(source)
-    if not os.path.exists(path):  # not even where no path can be like this
-        meant = did_you_mean(nearest(str(source), shipped))
-        raise InputError(str(source), NO_VALUE, f"no such file, nor a shipped mapping ({', '.join(shipped)}){meant}")
-    try:
-        data = tomllib.loads(read_text(path, "a mapping in TOML").decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:  # UnicodeDecodeError is a ValueError too
-        raise InputError(str(path), NO_VALUE, f"is not valid TOML: {error}") from None
-    return MarkerMap.checked(data)
-
-
-def mapped_markers(recording: Recording, mapping: MarkerMap) -> tuple[Recording, Labels]:
-    """Return the recording with the mapped markers only, and the labels of the others.
-
-    Raises:
-        InputError: labels are missing in the recording or are ambiguous; all missing ones are named.
-    """
-    missing = [label for label in mapping.mapped() if not _is_there(recording, label)]
-    if missing:
-        listed = ", ".join(missing)
-        raise InputError("mapping", listed, f"not in {recording.source}, which has {_short(recording.labels)}")
-    used = {recording.index(label) for label in mapping.mapped()}
-    unused = tuple(label for i, label in enumerate(recording.labels) if i not in used)
-    return recording.select(mapping.mapped()), unused
-
-
-def _is_there(recording: Recording, label: str) -> bool:
-    return any(name == label or name.rpartition(":")[2] == label for name in recording.labels)
-
-
-def _short(labels: Iterable[str]) -> str:
-    labels = list(labels)
-    return ", ".join(labels[:60]) + (f" and {len(labels) - 60} more" if len(labels) > 60 else "")
+    def without(self, gone: Set[str]) -> MarkerMap:
+        """Return the mapping without some markers of the segments."""
+        kept = {name: tuple(x for x in getattr(self.segments, name) if x not in gone) for name in Segments.model_fields}
+        return self.changed(segments=Segments(**kept))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,10 @@ import numpy as np
 import liftopt
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.gaps import Gap
-from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.mocap.recorded_lift import RecordedLift, RecordedWhole
 from liftopt.multibody.person.anthropometry import LinkLengths
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_joints import HANDS
 
 FILE, MODEL = "recorded.nc", "human_recorded.urdf"
 # Name in the file -> field, dimensions, unit, meaning.
@@ -40,6 +42,20 @@ VARIABLES: dict[str, tuple[str, tuple[str, ...], str, str]] = {
     "object_position": ("object_position", ("time", "xyz"), "m", "mean of the object's markers in the world"),
     "object_quaternion": ("object_quaternion", ("time", "quat"), "1", "turn of the object since the first frame"),
 }  # fmt: skip
+# The same of a whole person's.
+OF_WHOLE: dict[str, tuple[str, tuple[str, ...], str, str]] = {
+    "grasp_position": ("grasp_position", ("time", "grasp", "xyz"), "m", "grasp points of the hands in the world"),
+    "grasp_force": ("grasp_force", ("time", "grasp", "xyz"), "N", "force of each hand on the object, world axes"),
+    "centre_of_pressure": (
+        "centre_of_pressure", ("time", "xyz"), "m", "where the ground bears the model, in the world, on the floor",
+    ),
+    "plate_centre_of_pressure": (
+        "plate_centre", ("time", "xyz"), "m", "where all force plates together bear the person, in the world",
+    ),
+    "elbow_flexions": ("elbow_flexion", ("time", "side"), "rad", "elbow flexion between joint centres of markers"),
+    "knee_flexions": ("knee_flexion", ("time", "side"), "rad", "knee flexion between joint centres of markers"),
+}  # fmt: skip
+HEIGHTS = ("ankle", "knee", "hip", "ahead")
 
 
 def save_recorded(lift: RecordedLift, out: Path) -> None:
@@ -74,14 +90,13 @@ def load_recorded(path: str | Path) -> RecordedLift:
         raise InputError(str(path), NO_VALUE, "no such file; liftopt mocap writes one")
     try:
         with h5netcdf.File(path, "r") as file:
-            arrays: dict[str, Any] = {
-                field: np.array(file.variables[name][...]) if name in file.variables else None
-                for name, (field, *_) in VARIABLES.items()
-            }
+            arrays, of_whole = _arrays(file, VARIABLES), _arrays(file, OF_WHOLE)
             joints, markers = (_texts(file.variables[name][...]) for name in ("human_joint", "marker"))
             about = json.loads(file.attrs["record"])
+        whole = about.pop("whole", None)
         return RecordedLift(
             **arrays,
+            whole=RecordedWhole(**of_whole, **whole | {"left": LinkLengths(**whole["left"])}) if whole else None,
             joint_names=joints,
             markers=markers,
             subject=Subject(**about.pop("subject")),
@@ -111,6 +126,18 @@ def about(lift: RecordedLift) -> dict[str, Any]:
         "lifts": lift.lifts,
         "gaps": [asdict(gap) for gap in lift.gaps],
         "notes": lift.notes,
+    } | ({"whole": _about_whole(lift.whole)} if lift.whole else {})
+
+
+def _about_whole(whole: RecordedWhole) -> dict[str, Any]:
+    return {name: getattr(whole, name) for name in HEIGHTS} | {"left": asdict(whole.left)}
+
+
+def _arrays(file: Any, variables: Mapping[str, tuple[str, tuple[str, ...], str, str]]) -> dict[str, Any]:
+    """Return the arrays of a file by field, None where it has none."""
+    return {
+        field: np.array(file.variables[name][...]) if name in file.variables else None
+        for name, (field, *_) in variables.items()
     }
 
 
@@ -119,6 +146,10 @@ def _write(lift: RecordedLift, path: Path) -> None:
     import h5py
 
     labels = {"human_joint": lift.joint_names, "marker": lift.markers, "xyz": tuple("xyz"), "quat": tuple("xyzw")}
+    values = {name: (getattr(lift, field), *rest) for name, (field, *rest) in VARIABLES.items()}
+    if lift.whole:
+        labels |= {"side": HANDS, "grasp": tuple(f"human_{hand}" for hand in HANDS)}
+        values |= {name: (getattr(lift.whole, field), *rest) for name, (field, *rest) in OF_WHOLE.items()}
     with h5netcdf.File(path, "w") as file:
         file.dimensions["time"] = len(lift.time)
         for name, texts in labels.items():
@@ -127,10 +158,9 @@ def _write(lift: RecordedLift, path: Path) -> None:
             variable[:] = np.array(texts, dtype=object)
             variable.attrs["units"] = "1"
             variable.attrs["long_name"] = f"names along {name}"
-        for name, (field, dimensions, unit, meaning) in VARIABLES.items():
-            values = getattr(lift, field)
-            if values is not None:
-                variable = file.create_variable(name, dimensions, data=np.asarray(values, dtype=float))
+        for name, (array, dimensions, unit, meaning) in values.items():
+            if array is not None:
+                variable = file.create_variable(name, dimensions, data=np.asarray(array, dtype=float))
                 variable.attrs["units"] = unit
                 variable.attrs["long_name"] = meaning
         file.attrs["title"] = "liftopt: a recorded lift"

@@ -16,8 +16,38 @@ from liftopt.types import Array
 
 
 @dataclass(frozen=True)
+class RecordedWhole:
+    """What a record of a whole person has more than one of trunk and right arm; K frames.
+
+    Attributes:
+        grasp_position, grasp_force: (K, 2, 3) of right and left hand, and their forces on the object [m, N].
+        centre_of_pressure: (K, 3) that the model's motion asks for; NaN where the ground would have to pull [m].
+        plate_centre: (K, 3) of all force plates together, or None; NaN where they bear nothing [m].
+        elbow_flexion, knee_flexion: (K, 2) right and left, between joint centres of the markers [rad].
+        left: L1 to L6 with the left arm, measured.
+        ankle, knee, hip: heights of the model's joints when upright [m].
+        ahead: how far its trunk begins ahead of the hips [m].
+    """
+
+    grasp_position: Array
+    grasp_force: Array
+    centre_of_pressure: Array
+    plate_centre: Array | None
+    elbow_flexion: Array
+    knee_flexion: Array
+    left: LinkLengths
+    ankle: float
+    knee: float
+    hip: float
+    ahead: float
+
+
+@dataclass(frozen=True)
 class RecordedLift:
-    """A recorded lift in the terms of a solution: K frames, 13 joints, the world with X where the person faces.
+    """A recorded lift in the terms of a solution: K frames, n joints, the world with X where the person faces.
+
+    Of trunk and right arm n is 13: GT1 to GT3 follow the pelvis, and their forces are what the legs bear. Of a whole
+    person it is 20.
 
     Attributes:
         source: the recording.
@@ -25,26 +55,28 @@ class RecordedLift:
         subject: the person, for a prediction.
         stature_estimated: False if the stature was given.
         stature_by: stature that each segment implies [m].
-        lengths: L1 to L6 of the model that was tracked, measured.
+        lengths: L1 to L6 of the model that was tracked, measured, with the right arm.
         urdf: that model.
-        joint_names: (13,) ``human_GT1`` to ``human_Q10``.
+        joint_names: (n,) ``human_GT1`` to ``human_Q10``, or ``human_ankle`` to ``human_left_Q10``.
         time: (K,) on the recording's clock [s].
-        q, v, a, tau: (K, 13) [rad or m, per s, per s^2, Nm or N]. GT1 to GT3 follow the pelvis; their forces are
-            what the legs bear.
-        hand_position, hand_force: (K, 3) of ``human_grasp``, and its force on the object, world axes [m, N].
+        q, v, a, tau: (K, n) [rad or m, per s, per s^2, Nm or N].
+        hand_position, hand_force: (K, 3) of ``human_grasp``, and its force on the object, world axes [m, N]; of a whole
+            person the middle of both hands, and what they do together.
         force_from: where that force comes from, in words.
         ground_force, ground_moment: (K, 3) reaction of the ground that the model's motion asks for, at the foot origin;
-            its legs go along with the pelvis in one piece, so that it overstates what swaying and squatting take.
+            without a whole person its legs go along with the pelvis in one piece, so that it overstates what swaying
+            and squatting take.
         plate_force: (K, 3) what force plates measured, world axes, or None [N].
         markers: (M,) labels of what was tracked.
         residual: (K, M) distance of each from the model's, NaN where not seen [m].
-        elbow_flexion: (K,) between the joint centres that the markers show, without the model [rad].
+        elbow_flexion: (K,) of the right elbow between the joint centres that the markers show, without the model [rad].
         object_position, object_quaternion: (K, 3) [m] and (K, 4) x y z w since the first frame, or None.
         carried: time from and to which the object is away from where it lay [s]; None without an object, and where
             it is lifted several times until one lift is chosen.
         gaps: all gaps of the mapped markers.
         notes: what was repaired or left out, and what the model does not show.
         lifts: all such times, one for each lift [s].
+        whole: what only a whole person has, or None.
     """
 
     source: str
@@ -76,6 +108,12 @@ class RecordedLift:
     gaps: tuple[Gap, ...]
     notes: tuple[str, ...]
     lifts: tuple[tuple[float, float], ...] = ()
+    whole: RecordedWhole | None = None
+
+    @property
+    def body(self) -> str:
+        """``"arm"`` or ``"whole"``, as a scenario's person has it."""
+        return "whole" if self.whole else "arm"
 
     @property
     def residual_rms(self) -> Array:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.anatomy import Skeleton
-from liftopt.lab.mocap.marker_map import MarkerMap
+from liftopt.lab.mocap.marker_map import MarkerMap, Person
 from liftopt.lab.mocap.rigid import were_seen
 from liftopt.multibody.dh import BodyInertia, DHChain, human_rows
 from liftopt.multibody.person.anthropometry import DIMENSIONS, LinkLengths, link_lengths
@@ -22,7 +23,14 @@ from liftopt.types import Array
 HIP_BELOW_ASIS = 0.30
 # How far the stature may be off that one segment implies [m]: people of one stature differ in their proportions; our
 # choice.
-SPREAD: dict[str, float] = {"trunk": 0.10, "upper arm": 0.065, "forearm": 0.05}
+SPREAD: dict[str, float] = {
+    "trunk": 0.10,
+    "upper arm": 0.065,
+    "forearm": 0.05,
+    "thigh": 0.065,
+    "shank": 0.05,
+    "breastbone above the ankles": 0.025,
+}
 
 
 @dataclass(frozen=True)
@@ -56,17 +64,9 @@ def scale_subject(found: Skeleton, mapping: MarkerMap) -> ScaledSubject:
         InputError: sex or mass are given nowhere, or the stature is that of no adult.
     """
     person = mapping.subject
-    if not person.sex:
-        raise InputError("subject.sex", NO_VALUE, 'must be "male" or "female": in the mapping or by --sex')
-    if not person.mass:
-        raise InputError(
-            "subject.mass", NO_VALUE, "must be given in kg, for markers do not weigh: in the mapping or by --mass"
-        )
-    sex: Sex = person.sex
+    sex = told_sex(person)
     implied = _statures(found, mapping, sex, person.mass)
-    weight = {name: SPREAD[name] ** -2 for name in implied}
-    estimate = sum(weight[name] * implied[name] for name in implied) / sum(weight.values())
-    subject = Subject(person.stature or round(float(estimate), 3), person.mass, sex)
+    subject = estimated_subject(person, implied)
 
     pelvis, trunk = found.segments["pelvis"], found.segments["trunk"]
     navel = _asis(found, mapping)[:, 2] + _navel_above_asis(found, mapping, subject)
@@ -88,6 +88,28 @@ def scale_subject(found: Skeleton, mapping: MarkerMap) -> ScaledSubject:
         l6=found.hand,
     )
     return ScaledSubject(subject, lengths, implied, not person.stature, base)
+
+
+def told_sex(person: Person) -> Sex:
+    """Return the person's sex.
+
+    Raises:
+        InputError: sex or mass are given nowhere.
+    """
+    if not person.sex:
+        raise InputError("subject.sex", NO_VALUE, 'must be "male" or "female": in the mapping or by --sex')
+    if not person.mass:
+        raise InputError(
+            "subject.mass", NO_VALUE, "must be given in kg, for markers do not weigh: in the mapping or by --mass"
+        )
+    return person.sex
+
+
+def estimated_subject(person: Person, implied: Mapping[str, float]) -> Subject:
+    """Return the subject with the stature given, else with the mean of what segments imply, by ``SPREAD``."""
+    weight = {name: SPREAD[name] ** -2 for name in implied}
+    estimate = sum(weight[name] * implied[name] for name in implied) / sum(weight.values())
+    return Subject(person.stature or round(float(estimate), 3), person.mass, told_sex(person))
 
 
 def measured_chain(scaled: ScaledSubject) -> DHChain:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ TURNS: Array = np.array(
     [[0, 0, 0, 0, 0, 1, 0, -1, 0], [0, 0, -1, 0, 0, 0, 1, 0, 0], [0, 1, 0, -1, 0, 0, 0, 0, 0]], dtype=float
 )
 ITERATIONS, FIRST_ITERATIONS = 50, 300
+FIRST_ROUNDS = 20
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,7 @@ def track(
     lower: Array,
     upper: Array,
     start: Array,
+    ease: tuple[Array, Array] | None = None,
 ) -> TrackedMotion:
     """Return the joint positions within their limits that minimise the sum of squared marker distances, frame by frame.
 
@@ -74,16 +76,29 @@ def track(
         lower: (nq,) lower limits; one that equals the upper limit holds its joint.
         upper: (nq,) upper limits.
         start: (nq,) first guess.
+        ease: weights (nq,) of squared steps from where the frames before lead, beside the squared distances
+            [m^2/rad^2], and (nq,) how far from zero a joint is left in peace: what goes beyond is drawn back [rad].
+            None for none. Far below what markers weigh, this decides what these do not: a shoulder with the arm ahead
+            can be bent over or turned round.
     """
     q = np.clip(start, lower, upper)
+    before = q
     count, data = len(targets), model.createData()
     positions, residual = np.zeros((count, model.nq)), np.full(targets.shape[:2], np.nan)
     for frame in range(count):
         seen = np.isfinite(targets[frame]).all(axis=1)
         if seen.any():
-            cluster = _Markers.of(model, data, [marker for marker, there in zip(markers, seen, strict=True) if there])
+            there = [marker for marker, shown in zip(markers, seen, strict=True) if shown]
+            cluster = _Markers.of(model, data, there)
             most = ITERATIONS if frame else FIRST_ITERATIONS
-            q = _solve(cluster, targets[frame, seen], lower, upper, q, most)
+            if ease is None:
+                q = _solve(cluster, targets[frame, seen], lower, upper, q, most)
+            else:
+                # The first guess is no frame before: what it holds is let go in rounds.
+                for _ in range(1 if frame else FIRST_ROUNDS):
+                    eased = replace(cluster, ease=(np.sqrt(ease[0]), np.clip(2.0 * q - before, -ease[1], ease[1])))
+                    last, q = q, _solve(eased, targets[frame, seen], lower, upper, q, most)
+                    before = last if frame else q
             residual[frame, seen] = np.linalg.norm(cluster.places(q) - targets[frame, seen], axis=1)
         positions[frame] = q
     at_limit = ((positions <= lower + 1e-9) | (positions >= upper - 1e-9)) & (lower < upper)
@@ -98,13 +113,25 @@ class _Markers:
     data: pin.Data
     count: int
     by_joint: tuple[tuple[int, npt.NDArray[np.int_], Array], ...]
+    ease: tuple[Array, Array] | None = None  # roots of the weights, and the angles towards which
 
     @staticmethod
     def of(model: pin.Model, data: pin.Data, markers: Sequence[TrackedMarker]) -> _Markers:
         joints = np.array([marker.joint for marker in markers])
         local = np.array([marker.local for marker in markers])
         groups = [(int(joint), np.flatnonzero(joints == joint)) for joint in np.unique(joints)]
-        return _Markers(model, data, len(markers), tuple((joint, rows, local[rows]) for joint, rows in groups))
+        by_joint = tuple((joint, rows, local[rows]) for joint, rows in groups)
+        return _Markers(model, data, len(markers), by_joint)
+
+    def error(self, q: Array, targets: Array) -> Array:
+        """Return (3 M,) how far they are from where they should be, then (nq,) what angles cost if they do."""
+        away = (self.places(q) - targets).ravel()
+        return away if self.ease is None else np.concatenate([away, self.ease[0] * (q - self.ease[1])])
+
+    def slopes(self, q: Array) -> Array:
+        """Return the derivative of ``error``."""
+        jacobian = self.jacobian(q)
+        return jacobian if self.ease is None else np.concatenate([jacobian, np.diag(self.ease[0])])
 
     def places(self, q: Array) -> Array:
         """Return (M, 3) where they are in the world [m]."""
@@ -129,9 +156,9 @@ class _Markers:
 
 def _solve(markers: _Markers, targets: Array, lower: Array, upper: Array, q: Array, most: int) -> Array:
     damping = LEAST_DAMPING
-    error = (markers.places(q) - targets).ravel()
+    error = markers.error(q, targets)
     for _ in range(most):
-        slopes = markers.jacobian(q)
+        slopes = markers.slopes(q)
         gradient = slopes.T @ error
         free = ~(((q <= lower) & (gradient > 0.0)) | ((q >= upper) & (gradient < 0.0)) | (lower == upper))
         normal = slopes[:, free].T @ slopes[:, free]
@@ -139,7 +166,7 @@ def _solve(markers: _Markers, targets: Array, lower: Array, upper: Array, q: Arr
             step = np.zeros_like(q)
             step[free] = -np.linalg.solve(normal + damping * np.eye(free.sum()), gradient[free])
             trial = np.clip(q + step, lower, upper)
-            trial_error = (markers.places(trial) - targets).ravel()
+            trial_error = markers.error(trial, targets)
             better = trial_error @ trial_error <= error @ error
             if better or damping >= MOST_DAMPING:
                 break

@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from liftopt.errors import InputError
-from liftopt.lab.mocap.marker_map import MarkerMap, Segments
+from liftopt.lab.mocap.marker_map import MarkerMap
 from liftopt.lab.mocap.recording import Recording
+from liftopt.lab.mocap.whole_map import WholeMap
 
+Mapping = TypeVar("Mapping", MarkerMap, WholeMap)
 SPAN = re.compile(r"(?P<marker>.+):(?P<start>[0-9.]+)-(?P<end>[0-9.]+)")
 
 
@@ -74,7 +77,7 @@ def chosen_part(recording: Recording, part: TrialPart) -> Recording:
     return _cut(_without(recording, part.ignored), part)
 
 
-def without_ignored(mapping: MarkerMap, part: TrialPart) -> MarkerMap:
+def without_ignored(mapping: Mapping, part: TrialPart) -> Mapping:
     """Return the mapping without the markers that are ignored throughout.
 
     Raises:
@@ -83,16 +86,12 @@ def without_ignored(mapping: MarkerMap, part: TrialPart) -> MarkerMap:
     gone = {one.marker for one in part.ignored if one.start == -np.inf}
     if not gone:
         return mapping
-    for name, labels in mapping.landmarks:
-        if needed := [label for label in labels if label in gone]:
+    for label in sorted(gone):
+        if name := mapping.landmark_of(label):
             raise InputError(
-                "--ignore", needed[0], f"is the landmark {name}, which is needed; ignore a span: {needed[0]}:FROM-TO"
+                "--ignore", label, f"is the landmark {name}, which is needed; ignore a span: {label}:FROM-TO"
             )
-    kept = {
-        name: tuple(label for label in getattr(mapping.segments, name) if label not in gone)
-        for name in Segments.model_fields
-    }
-    return mapping.changed(segments=Segments(**kept))
+    return mapping.without(gone)
 
 
 def _without(recording: Recording, ignored: tuple[Ignored, ...]) -> Recording:

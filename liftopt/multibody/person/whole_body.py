@@ -7,17 +7,17 @@ the left arm is the right one's mirror image, so that equal angles on both sides
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
 
 from liftopt.multibody.agent import Agent, Grasp, HalfSpace
-from liftopt.multibody.dh import BodyInertia, frame_transforms
-from liftopt.multibody.person.anthropometry import landmarks
+from liftopt.multibody.dh import BodyInertia, DHChain, frame_transforms, human_rows
+from liftopt.multibody.person.anthropometry import LinkLengths, landmarks, link_lengths
 from liftopt.multibody.person.bodies import whole_bodies
 from liftopt.multibody.person.comfort import human_lean, whole_comfort
-from liftopt.multibody.person.human import NAME, ORIGIN, POSTURE_DEG, human_chain, human_root, joint_bounds
+from liftopt.multibody.person.human import NAME, ORIGIN, POSTURE_DEG, human_root, joint_bounds
 from liftopt.multibody.person.human_shapes import whole_shapes
 from liftopt.multibody.person.lumbar_levers import spine_shares
 from liftopt.multibody.person.stance import human_stance
@@ -39,6 +39,44 @@ from liftopt.types import Array
 LEG_POSTURE_DEG = {"ankle": 10.0, "knee": 20.0, "hip": 10.0}
 # Reflections: of the world in the body's median plane, and of a frame's own z axis, about which its joint turns.
 MIRRORED_WORLD, MIRRORED_AXIS = np.diag([1.0, -1.0, 1.0, 1.0]), np.diag([1.0, 1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class WholeLengths:
+    """Where the joints of an upright person are.
+
+    Attributes:
+        links: L1 to L6 of Table 2 with the right arm; L1 is the height of the spine's base [m].
+        left: the same with the left arm.
+        ankle, knee, hip: heights of the joints [m].
+        ahead: how far the spine's base, and with it trunk and arms, is ahead of the hip [m].
+    """
+
+    links: LinkLengths
+    left: LinkLengths
+    ankle: float
+    knee: float
+    hip: float
+    ahead: float = 0.0
+
+    @staticmethod
+    def of(subject: Subject) -> WholeLengths:
+        """Return those of the subject."""
+        heights, links = landmarks(subject), link_lengths(subject)
+        return WholeLengths(links, links, heights.ankle, heights.knee, heights.hip)
+
+    @property
+    def arms(self) -> dict[str, LinkLengths]:
+        """L1 to L6 by side."""
+        return dict(zip(HANDS, (self.links, self.left), strict=True))
+
+    @property
+    def limbs(self) -> dict[str, float]:
+        """Length of every limb by the joint that moves it [m]."""
+        found = {"ankle": self.knee - self.ankle, "knee": self.hip - self.knee}
+        for side, links in self.arms.items():
+            found |= {f"{side}_Q6": links.l4, f"{side}_Q8": links.l5, f"{side}_Q10": links.l6}
+        return found
 
 
 @dataclass(frozen=True)
@@ -104,11 +142,21 @@ def grasp_frame(name: str, hand: str) -> str:
     return f"{name}_{hand}_grasp"
 
 
-def whole_human_urdf(subject: Subject, name: str = NAME, place: Placement = ORIGIN) -> str:
-    """Return the subject's URDF; arguments as ``whole_human_agent``."""
-    bodies, shapes = whole_bodies(subject), whole_shapes(subject)
-    bounds = joint_bounds(JOINTS, whole_limits(subject))
-    segments, grasps = _segments(subject)
+def whole_human_urdf(
+    subject: Subject, name: str = NAME, place: Placement = ORIGIN, measured: WholeLengths | None = None
+) -> str:
+    """Return the subject's URDF; arguments as ``whole_human_agent``.
+
+    With measured lengths the joints are where these have them, and the bodies are the subject's: those of the limbs
+    keep their mass and are stretched to the measured length, the pelvis' keeps its place above the hip, the trunk's
+    above the base of the spine. Shapes are the subject's own, as they are only looked at.
+    """
+    shapes, bounds = whole_shapes(subject), joint_bounds(JOINTS, whole_limits(subject))
+    own, lengths = WholeLengths.of(subject), measured or WholeLengths.of(subject)
+    bodies = _bodies(subject, _segments(own)[0])
+    segments, grasps = _segments(lengths)
+    if measured:
+        bodies = _with_lengths(bodies, own, measured)
     # A URDF reader takes the joints of a branching by name, and "left" comes before "right": the left arm stands on a
     # link of its own, whose joint human_shoulder_left_fixed comes after human_right_Q4, so that the right arm is first.
     base, shoulder = f"{name}_base", f"{name}_shoulder_left"
@@ -116,10 +164,11 @@ def whole_human_urdf(subject: Subject, name: str = NAME, place: Placement = ORIG
     links = {joint: link_name(name, joint) if joint else base for joint in at}
     first_left = f"left_{ARM[0]}"
     at[shoulder], links[shoulder] = at[first_left], shoulder
+    of_subject = {item.joint: item.placement for item in _segments(own)[0]}
     moving = []
     for item in segments:
         parent = shoulder if item.joint == first_left else item.parent
-        to_link = np.asarray(np.linalg.inv(item.placement), dtype=np.float64)
+        to_link = np.asarray(np.linalg.inv(of_subject[item.joint]), dtype=np.float64)
         moving.append(
             MovingLink(
                 joint_name(name, item.joint),
@@ -128,11 +177,11 @@ def whole_human_urdf(subject: Subject, name: str = NAME, place: Placement = ORIG
                 "revolute",
                 _between(at[parent], item.placement),
                 bounds[item.joint],
-                _on_link(bodies.get(item.joint), item.placement),
+                bodies[item.joint],
                 tuple(shape.seen_from(to_link) for shape in shapes.get(item.joint, ())),
             )
         )
-    feet = bodies["feet"].rounded()
+    feet = whole_bodies(subject)["feet"].rounded()
     fixed = [
         FixedLink(base, "world", place.T_world_base, feet, shapes["feet"]),
         FixedLink(shoulder, links[TRUNK[-1]], _between(at[TRUNK[-1]], at[first_left])),
@@ -143,26 +192,37 @@ def whole_human_urdf(subject: Subject, name: str = NAME, place: Placement = ORIG
     return urdf_text(tree_robot(name, moving, fixed))
 
 
-def _segments(subject: Subject) -> tuple[list[_Segment], dict[str, Array]]:
+def _segments(lengths: WholeLengths) -> tuple[list[_Segment], dict[str, Array]]:
     """Return the tree's links, parents first, and T_feet_grasp of each hand, all joints at zero."""
-    heights, chain = landmarks(subject), human_chain(subject)
-    legs = {"ankle": heights.ankle, "knee": heights.knee, "hip": heights.hip}
+    legs = {"ankle": lengths.ankle, "knee": lengths.knee, "hip": lengths.hip}
     segments, parent = [], ""
     for joint, height in legs.items():
         segments.append(_Segment(joint, parent, _sagittal(height, forward=joint != "knee")))
         parent = joint
-    table = link_placements(chain, human_root())
+    table, grasps = _table(lengths.links, lengths.ahead)[0], {}
     for joint in TRUNK:
         segments.append(_Segment(joint, parent, table[joint]))
         parent = joint
-    hand = human_root() @ frame_transforms(chain, np.zeros(len(chain.rows)))[-1]
-    for side in HANDS:
-        above = parent
+    for side, links in lengths.arms.items():
+        (table, hand), above = _table(links, lengths.ahead), parent
         for joint in ARM:
             at = table[joint] if side == "right" else mirrored(table[joint])
             segments.append(_Segment(f"{side}_{joint}", above, at))
             above = f"{side}_{joint}"
-    return segments, {"right": hand, "left": mirrored(hand)}
+        grasps[side] = hand if side == "right" else mirrored(hand)
+    return segments, grasps
+
+
+def _table(links: LinkLengths, ahead: float) -> tuple[dict[str, Array], Array]:
+    """Return T_feet_link of Table 2's joints by name, and T_feet_grasp, of a right arm whose spine is ahead so far."""
+    rows = human_rows(*vars(links).values())
+    chain = DHChain(NAME, rows, tuple(BodyInertia.zero() for _ in rows))
+    table = link_placements(chain, human_root())
+    hand = human_root() @ frame_transforms(chain, np.zeros(len(rows)))[-1]
+    if ahead:
+        for placement in (*table.values(), hand):
+            placement[0, 3] += ahead
+    return table, hand
 
 
 def _sagittal(height: float, *, forward: bool) -> Array:
@@ -185,6 +245,26 @@ def _between(first: Array, second: Array) -> Array:
     placement[:3, :3] = first[:3, :3].T @ second[:3, :3]
     placement[:3, 3] = first[:3, :3].T @ (second[:3, 3] - first[:3, 3])
     return placement
+
+
+def _bodies(subject: Subject, segments: Sequence[_Segment]) -> dict[str, BodyInertia]:
+    """Return the subject's bodies in the frames of the links; massless where there is none."""
+    bodies = whole_bodies(subject)
+    return {item.joint: _on_link(bodies.get(item.joint), item.placement) for item in segments}
+
+
+def _with_lengths(bodies: dict[str, BodyInertia], own: WholeLengths, measured: WholeLengths) -> dict[str, BodyInertia]:
+    """Return bodies, in the frames of their links, of one whose joints are elsewhere."""
+    changed, limbs = dict(bodies), own.limbs
+    for joint, length in measured.limbs.items():
+        factor, body = length / limbs[joint], bodies[joint]
+        changed[joint] = BodyInertia(body.mass, factor * body.com, factor**2 * body.inertia).rounded()
+    before, after = ({item.joint: item.placement for item in _segments(one)[0]} for one in (own, measured))
+    last, body = TRUNK[-1], bodies[TRUNK[-1]]
+    base = np.array([measured.ahead - own.ahead, 0.0, measured.links.l1 - own.links.l1])
+    moved = base - (after[last][:3, 3] - before[last][:3, 3])
+    changed[last] = replace(body, com=body.com + after[last][:3, :3].T @ moved).rounded()
+    return changed
 
 
 def _on_link(body: BodyInertia | None, placement: Array) -> BodyInertia:

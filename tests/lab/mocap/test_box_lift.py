@@ -9,8 +9,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from liftopt.lab.mocap.from_markers import Load, read_recording, recorded_lift
-from liftopt.lab.mocap.marker_map import load_marker_map
+from liftopt.lab.mocap.from_markers import read_recording, recorded_lift
+from liftopt.lab.mocap.loads import Load
+from liftopt.lab.mocap.map_file import load_marker_map
 from liftopt.lab.mocap.motion_table import read_motion_table
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario

@@ -10,7 +10,7 @@ import pytest
 import tomli_w
 
 from liftopt.errors import InputError
-from liftopt.lab.mocap.marker_map import load_marker_map, mapped_markers, shipped_maps
+from liftopt.lab.mocap.map_file import load_marker_map, mapped_markers, shipped_maps
 from liftopt.lab.mocap.recording import Recording
 
 
@@ -75,7 +75,9 @@ def test_files_that_are_no_mapping(tmp_path: Path) -> None:
         path.write_bytes(content)
         with pytest.raises(InputError, match=match):
             load_marker_map(path)
-    with pytest.raises(InputError, match=r"no such file, nor a shipped mapping \(box_lift\); did you mean box_lift"):
+    with pytest.raises(
+        InputError, match=r"no such file, nor a shipped mapping \(.*box_lift.*\); did you mean box_lift"
+    ):
         load_marker_map("box_lft")
     with pytest.raises(InputError, match="no such file"):
         load_marker_map("no_such_map")

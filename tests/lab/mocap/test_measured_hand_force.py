@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.mocap.from_markers import Load, recorded_lift
+from liftopt.lab.mocap.from_markers import recorded_lift
 from liftopt.lab.mocap.hand_force import HandForce, read_hand_force
+from liftopt.lab.mocap.loads import Load
 
 TIME = np.arange(200) / 100.0
 LIFT = 30.0 * np.sin(np.pi * TIME / 2.0)

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.mocap.from_markers import Load, read_recording, recorded_lift
-from liftopt.lab.mocap.marker_map import load_marker_map, mapped_markers
+from liftopt.lab.mocap.from_markers import read_recording, recorded_lift
+from liftopt.lab.mocap.loads import Load
+from liftopt.lab.mocap.map_file import load_marker_map, mapped_markers
 from liftopt.lab.mocap.outliers import ShapeGroup, without_far_points, without_outliers
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recording import in_metres

@@ -11,8 +11,9 @@ import pinocchio as pin
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.mocap.from_markers import Load, recorded_lift
+from liftopt.lab.mocap.from_markers import recorded_lift
 from liftopt.lab.mocap.hand_force import HandForce
+from liftopt.lab.mocap.loads import Load
 from liftopt.lab.mocap.recorded_file import load_recorded, save_recorded
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.mocap.recording import TO_Z_UP, ForcePlate, Recording, in_metres

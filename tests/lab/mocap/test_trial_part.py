@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from liftopt.errors import InputError
-from liftopt.lab.mocap.from_markers import Load, recorded_lift
+from liftopt.lab.mocap.from_markers import recorded_lift
+from liftopt.lab.mocap.loads import Load
 from liftopt.lab.mocap.object_motion import lifts
 from liftopt.lab.mocap.recorded_file import load_recorded, save_recorded
 from liftopt.lab.mocap.recorded_lift import RecordedLift
