@@ -28,6 +28,19 @@ from liftopt.search.initial_guess import InitialGuess, posture_starts
 from liftopt.solution.finding import Assessment, Finding
 from liftopt.solution.solution import Solution
 
+ALONE = """
+schema = 2
+name = "alone"
+duration = 2.0
+agents.human = { kind = "person", body = "whole", stature = 1.75, mass = 75.0, sex = "male" }
+object = { name = "box", mass = 8.0, depth = 0.3, width = 0.4, height = 0.3 }
+solver = { intervals = 10, starts = 2 }
+
+[task]
+standing_distance = 1.9
+start = { height = 0.5, human_distance = 0.35 }
+end = { height = 1.0, human_distance = 0.35 }
+"""
 TEN_DEGREES = np.radians(10.0)
 
 
@@ -87,6 +100,14 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Solved]:
         return Solved(solution, folder)
 
     return solve_once
+
+
+@pytest.fixture(scope="session")
+def alone(solved: Callable[..., Solved], tmp_path_factory: pytest.TempPathFactory) -> Solved:
+    """A whole person who lifts a box with both hands and nobody else."""
+    file = tmp_path_factory.mktemp("scenario") / "alone.toml"
+    file.write_text(ALONE, encoding="utf-8")
+    return solved(str(file))
 
 
 @pytest.fixture(scope="session")

@@ -91,8 +91,7 @@ def _forward(solution: Solution) -> Iterator[Check]:
     share = float(whole.share[worst]) if np.isfinite(whole.deviation.joint) else np.inf
     most = f"{whole.joints[worst]}, {whole.torque[worst]:.3f} Nm; at most {whole.torque.max():.3f} Nm in any joint"
     yield Check("MuJoCo with feedback, torque added", share, FEEDBACK, "of its limit", most)
-    about = "about its x axis" if solution.object.grasp_position.shape[1] > 1 else "about its one grasp"
-    yield Check(f"MuJoCo with feedback, moment added on the {name}", whole.moment, np.inf, "Nm", about)
+    yield Check(f"MuJoCo with feedback, moment added on the {name}", whole.moment, np.inf, "Nm", simulation.about)
 
 
 def _deviation(what: str, deviation: Deviation, where: str) -> Iterator[Check]:

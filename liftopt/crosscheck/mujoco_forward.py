@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
+from liftopt.errors import ModelError
 from liftopt.multibody.mujoco_model import States, import_mujoco, spec_of, states_of
 from liftopt.multibody.trajectory import grasps_of
 from liftopt.scenario.build import agents_of, object_of
@@ -218,20 +219,26 @@ class Simulation:
         return int(self.solution.object.grasp_position.shape[1])
 
     @cached_property
-    def _row(self) -> int:
-        """Which row of the object's balance the grasps may leave unserved; of any that serve all, the roll's."""
-        if any(hold.moments for *_, hold in grasps_of(self.solution.agents)):
-            return ROLL
-        return object_of(self.solution.scenario, self.solution.urdfs).unserved_row() or ROLL
+    def _rows(self) -> list[int]:
+        """Rows of the balance of the turns that forces at the grasp points leave free: a single point leaves three."""
+        try:
+            return [object_of(self.solution.scenario, self.solution.urdfs).unserved_row() or ROLL]
+        except ModelError:
+            return [ROLL, ROLL + 1, ROLL + 2]
+
+    @property
+    def about(self) -> str:
+        """About what forces at the grasp points leave the object free to turn, in words."""
+        return f"about its {'xyz'[self._rows[0] - ROLL]} axis" if len(self._rows) == 1 else "about its one grasp"
 
     @property
     def _free(self) -> int:
-        return self._body + self._row
+        return self._body + self._rows[0]
 
     @property
     def _turns(self) -> list[int]:
-        """Where in qvel the object can turn about its grasp points: a single point leaves all three axes free."""
-        return [self._free] if self._grasps > 1 else [self._body + row for row in (3, 4, 5)]
+        """Where in qvel the object can turn about its grasp points."""
+        return [self._body + row for row in self._rows]
 
     def _start(self, k: int, serve: bool) -> float:
         """Put the simulation on the solution; return by how much its grasp forces differ there [N]."""
@@ -239,7 +246,7 @@ class Simulation:
         mujoco.mj_resetData(self._model, data)
         data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
         data.qfrc_applied[:], data.xfrc_applied[:, 3:] = self._states.tau[k], self._moments[k]
-        data.qfrc_applied[self._free] = self._dense.object.wrench[k, self._row] * serve
+        data.qfrc_applied[self._free] = self._dense.object.wrench[k, self._rows[0]] * serve
         mujoco.mj_forward(self._model, data)
         # A constraint's force acts on its first body along world axes: on the agent, from the object.
         forces = -data.efc_force.reshape(self._grasps, 3)
@@ -249,7 +256,7 @@ class Simulation:
     def _feedforward(self, k: int, serve: bool) -> Array:
         """Return the solved torques, and the moment on the object if served, halfway through a step."""
         force: Array = self._states.tau[k : k + 2].mean(axis=0)
-        force[self._free] = self._dense.object.wrench[k : k + 2, self._row].mean() * serve
+        force[self._free] = self._dense.object.wrench[k : k + 2, self._rows[0]].mean() * serve
         return force
 
     def _feedback(self, k: int) -> Array:

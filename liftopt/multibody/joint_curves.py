@@ -1,8 +1,8 @@
-"""Joints over time as they are read: Table 2's in an anatomist's words and signs, a robot's by its maker's names."""
+"""Joints over time as they are read: a person's in an anatomist's words and signs, a robot's by its maker's names."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,30 +13,36 @@ from liftopt.types import Array
 
 @dataclass(frozen=True)
 class AnatomicalJoint:
-    """One joint of the right arm or the trunk as anatomy counts it.
+    """One joint of a person as anatomy counts it.
 
     Attributes:
-        joint: name in Table 2, ``"Q7"``.
+        joint: name without the person's, ``"Q7"``, ``"left_Q7"``, ``"knee"``.
         motion: the motion that is positive, ``"elbow flexion"``.
         opposite: the motion that is negative.
-        sign: anatomical angle (and torque) over that of Table 2, +1 or -1; both are zero in the zero pose (upright, arm
-            hanging, palm forward).
+        sign: anatomical angle (and torque) over the model's, +1 or -1; both are zero in the zero pose (upright, arms
+            hanging, palms forward).
+        part: of the whole body that it belongs to, ``"left arm"``; empty of a person with one arm.
     """
 
     joint: str
     motion: str
     opposite: str
     sign: int
+    part: str = ""
 
     @property
     def dh(self) -> str:
-        """The joint of Table 2 with its sign, ``"-Q7"``."""
-        return self.joint if self.sign > 0 else f"\N{MINUS SIGN}{self.joint}"
+        """The joint of Table 2 with its sign, ``"-Q7"``; nothing of a leg, which Table 2 has not."""
+        joint = self.joint.rpartition("_")[2]
+        if joint in LEGS:
+            return ""
+        return joint if self.sign > 0 else f"\N{MINUS SIGN}{joint}"
 
     @property
     def label(self) -> str:
         """Both names, ``"Elbow flexion (-Q7)"``."""
-        return f"{self.motion[0].upper()}{self.motion[1:]} ({self.dh})"
+        title = f"{self.motion[0].upper()}{self.motion[1:]}"
+        return f"{title} ({self.dh})" if self.dh else title
 
 
 ANATOMY: tuple[AnatomicalJoint, ...] = (
@@ -51,6 +57,11 @@ ANATOMY: tuple[AnatomicalJoint, ...] = (
     AnatomicalJoint("Q9", "wrist flexion", "extension", -1),
     AnatomicalJoint("Q10", "wrist ulnar deviation", "radial deviation", +1),
 )
+LEGS: dict[str, AnatomicalJoint] = {
+    "ankle": AnatomicalJoint("ankle", "ankle dorsiflexion", "plantarflexion", +1, "legs"),
+    "knee": AnatomicalJoint("knee", "knee flexion", "extension", +1, "legs"),
+    "hip": AnatomicalJoint("hip", "hip flexion", "extension", +1, "legs"),
+}
 
 
 @dataclass(frozen=True)
@@ -60,6 +71,7 @@ class JointCurve:
     Attributes:
         joint: short name, ``"Q7"``.
         label: for a reader, DH name included.
+        part: of the body that it belongs to, where it has several.
         q: (K,) angle [deg].
         v: (K,) speed [deg/s].
         tau: (K,) torque [Nm], positive in the positive direction of ``q``.
@@ -70,6 +82,7 @@ class JointCurve:
 
     joint: str
     label: str
+    part: str
     q: Array
     v: Array
     tau: Array
@@ -79,9 +92,26 @@ class JointCurve:
     share: Array
 
 
+def anatomy_of(human: AgentTrajectory) -> tuple[AnatomicalJoint, ...]:
+    """Return the joints of a person that move, in the model's order: ten, or those of the whole body by its parts."""
+    joints = [name.removeprefix(f"{human.name}_") for name in human.moving_joints]
+    whole = any(joint in LEGS for joint in joints)
+    return tuple(_anatomy(joint, whole=whole) for joint in joints)
+
+
+def _anatomy(joint: str, *, whole: bool) -> AnatomicalJoint:
+    if joint in LEGS:
+        return LEGS[joint]
+    side, _, name = joint.rpartition("_")
+    (found,) = (item for item in ANATOMY if item.joint == name)
+    if side:
+        return replace(found, joint=joint, motion=f"{side} {found.motion}", part=f"{side} arm")
+    return replace(found, part="trunk") if whole else found
+
+
 def human_curves(human: AgentTrajectory) -> tuple[JointCurve, ...]:
-    """Return Q1 to Q10 of the person in anatomical signs."""
-    return tuple(_curve(human, joint.joint, joint.label, joint.sign) for joint in ANATOMY)
+    """Return the joints of a person that move, in anatomical signs."""
+    return tuple(_curve(human, item.joint, item.label, item.sign, item.part) for item in anatomy_of(human))
 
 
 def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
@@ -94,7 +124,7 @@ def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
     return tuple(curves)
 
 
-def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCurve:
+def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int, part: str = "") -> JointCurve:
     column = agent.joint_names.index(f"{agent.name}_{joint}")
     row = int(np.count_nonzero(agent.moving[:column]))
     limits, tau = agent.limits, agent.tau[:, column]
@@ -103,6 +133,7 @@ def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int) -> JointCu
     return JointCurve(
         joint=joint,
         label=label,
+        part=part,
         q=sign * np.degrees(agent.q[:, column]),
         v=sign * np.degrees(agent.v[:, column]),
         tau=sign * tau,

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from liftopt.search.candidate import Candidate
+from liftopt.search.elastic_clearing import cleared_elastically
 from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.search.optima import PROMISING, each_once, is_known, objective_of
 from liftopt.search.passing_paths import passing_paths
@@ -91,6 +92,10 @@ def _passing(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> l
                 break
             start = replace(origin, result=replace(origin.result, x=x, converged=False))
             attempt = clearer.make_clear(start, polish=False, also=first.deep)
+            if not attempt.clear and not found:
+                # To the end: a rough optimum that touches all sides is a bad start for more rounds.
+                exact = session.clearer(origin.problem) or clearer
+                attempt = cleared_elastically(exact, start, first.deep) or attempt
             found += [attempt.candidate] if attempt.clear else []
         if found:
             break

@@ -32,6 +32,8 @@ TURN = 0.85
 FLIP, THROUGH = -0.1, 1e4
 # What it costs at a knot to pass on the other side of what stands around than the object: so much, times 1 - cosine.
 BESIDE = 2.0
+# And for who holds the object, on another side of it than where arms, legs and trunk belong.
+OFF_SIDE = {"arm": 20.0, "body": 2.0}
 # Depth costs so much more at the ends where the task places the object, and it can hardly yield.
 FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
@@ -194,6 +196,8 @@ def _normals(
     cost = np.minimum(cost, 1e6)
     if beside is not None:
         cost += BESIDE * (1.0 - np.einsum("kda,ka->kd", directions, beside))
+    if p in solids.sides:
+        cost += _off_side(solids, found, p, directions)
     first = _cheapest(cost, directions)
     if p in options.avoided:
         chosen = directions[np.arange(len(first)), first]
@@ -203,6 +207,14 @@ def _normals(
         alike = (np.einsum("kda,ca->kdc", directions, passed) > SAME_SIDE).any(axis=2)
         first = _cheapest(cost + THROUGH * alike, directions)
     return directions[np.arange(len(first)), first]
+
+
+def _off_side(solids: TeamSolids, found: SolidDistances, p: int, directions: Array) -> Array:
+    """Return what each direction (K, D) costs for being off the side of the object where its holder's part belongs."""
+    side = solids.sides[p]
+    box = solids.ends[p, 0 if side.object_is_first else 1]
+    normal = found.placements[:, box, :3, :3] @ side.normal
+    return np.asarray(OFF_SIDE[side.kind] * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
 
 
 def _is_placed(solids: TeamSolids, p: int) -> bool:

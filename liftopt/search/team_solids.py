@@ -16,6 +16,7 @@ from liftopt.collocation.separating_planes import WORLD, Body, PosePart, pose_pa
 from liftopt.multibody.poses import joint_placements, object_placements
 from liftopt.multibody.solid_pairs import SolidPair, solid_pairs
 from liftopt.multibody.solids import Solid
+from liftopt.search.holder_sides import HolderSide, holder_sides
 from liftopt.types import Array, Progress
 
 CORNERS = 8  # points of the largest hull; smaller ones repeat theirs
@@ -69,6 +70,11 @@ class TeamSolids:
         """(P, 2) numbers of the solids of each pair."""
         number = {id(solid): i for i, solid in enumerate(self.solids)}
         return np.array([[number[id(p.one)], number[id(p.other)]] for p in self.pairs], dtype=np.int64).reshape(-1, 2)
+
+    @cached_property
+    def sides(self) -> dict[int, HolderSide]:
+        """On which side of the object parts of its holders belong, by number of the pair, see ``holder_sides``."""
+        return holder_sides(self.team, self.solids, self.bodies, self.ends)
 
     @cached_property
     def points(self) -> Array:

@@ -22,6 +22,7 @@ from liftopt.viz.base import base_of
 from liftopt.viz.free_arm import hanging_arm
 from liftopt.viz.holding import held_by_gripper, held_by_hand
 from liftopt.viz.person_bodies import PersonBodies, bodies_between, half_way
+from liftopt.viz.scene_pressure import pressure_body, pressure_placements
 from liftopt.viz.who import robot_of
 
 FRAME_RATE = 50.0  # [Hz]; the viewer interpolates in between
@@ -111,6 +112,8 @@ def playback_at(solution: Solution, time: Array) -> Playback:
         bases[agent.name] = base_of(agent)
         moved = _Moved(track, bases[agent.name], placements, upright, T_world_object)
         holding, drawn = _holding(solution, moved), _drawn(solution, moved)
+        if (disc := pressure_placements(track, bases[agent.name], knots, time)) is not None:
+            drawn[pressure_body(agent.name)] = disc, np.eye(4)
         moves = placements | holding | {name: list_ for name, (list_, _) in drawn.items()}
         bodies |= {name: _track(list_) for name, list_ in moves.items()}
         for own, grasp in enumerate(agent.grasps):

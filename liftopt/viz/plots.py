@@ -24,6 +24,7 @@ from liftopt.viz.plots_joints import human_angles, human_arm, human_torques, rob
 from liftopt.viz.plots_recorded import recorded_angles
 from liftopt.viz.plots_snapshots import snapshots
 from liftopt.viz.plots_spine import spine_load
+from liftopt.viz.plots_standing import centre_of_pressure
 from liftopt.viz.plots_style import STYLE, head
 
 PNG_DPI = 200
@@ -57,6 +58,7 @@ class AgentPlot:
         what: end of the file's name where there are several, after the agent's.
         caption: as that of a plot; ``{who}`` stands for the agent.
         draw: makes that of one agent.
+        standing: whether it is of those only who stand on soles.
     """
 
     kind: Kind
@@ -64,6 +66,11 @@ class AgentPlot:
     what: str
     caption: str
     draw: Callable[[Lift, AgentTrajectory], Figure]
+    standing: bool = False
+
+    def is_of(self, agent: AgentTrajectory) -> bool:
+        """Return whether there is one of an agent."""
+        return agent.kind == self.kind and (agent.stance is not None or not self.standing)
 
 
 PLOTS: tuple[Plot | AgentPlot, ...] = (
@@ -139,6 +146,15 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
     AgentPlot("person", "ground_reaction", "ground_reaction", "What the ground does to {who}.", ground_reaction),
     AgentPlot(
         "person",
+        "centre_of_pressure",
+        "centre_of_pressure",
+        "Where the floor bears {who}: the centre of pressure under the feet, from above, and how far it stays within "
+        "what of the soles bears, from the heels to the balls of the feet.",
+        centre_of_pressure,
+        standing=True,
+    ),
+    AgentPlot(
+        "person",
         "strength_used",
         "strength_used",
         "Share of {who}'s strength that each joint uses over the lift.",
@@ -171,7 +187,7 @@ def plots_of(lift: Lift) -> tuple[Plot, ...]:
         if plot.name == "clearance" and lift.dense.clearance is None:
             continue
         if isinstance(plot, AgentPlot):
-            plots += [_of(plot, agent, lift) for agent in agents if agent.kind == plot.kind]
+            plots += [_of(plot, agent, lift) for agent in agents if plot.is_of(agent)]
         else:
             plots.append(replace(plot, caption=plot.caption.format(all=everybody)))
     return tuple(plots)
@@ -180,7 +196,7 @@ def plots_of(lift: Lift) -> tuple[Plot, ...]:
 def figure_names(agents: Sequence[AgentTrajectory], agent: AgentTrajectory) -> dict[str, str]:
     """Return the names of an agent's plots by what they show, ``"angles"``."""
     alone, plots = who_is(agent, agents).is_alone, [plot for plot in PLOTS if isinstance(plot, AgentPlot)]
-    return {plot.what: plot.name if alone else f"{agent.name}_{plot.what}" for plot in plots if plot.kind == agent.kind}
+    return {plot.what: plot.name if alone else f"{agent.name}_{plot.what}" for plot in plots if plot.is_of(agent)}
 
 
 def _of(plot: AgentPlot, agent: AgentTrajectory, lift: Lift) -> Plot:

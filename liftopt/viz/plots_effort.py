@@ -10,12 +10,13 @@ from liftopt.assessment.joints import NEAR_LIMIT
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.measures import ergonomics_of
 from liftopt.ergonomics.scores import PostureScores
-from liftopt.multibody.joint_curves import ANATOMY
+from liftopt.multibody.joint_curves import anatomy_of
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, panels, percent, time_axes
 
+ONE_ARM = 10  # joints of a person with one arm
 Levels = tuple[tuple[float, str], ...]
 ACTION_LEVELS: Levels = ((2.5, "acceptable"), (4.5, "investigate"), (6.5, "change soon"), (7.5, "change now"))
 REBA_LEVELS: Levels = ((3.5, "low risk"), (7.5, "investigate"), (10.5, "change soon"), (12.5, "change now"))
@@ -26,12 +27,12 @@ def strength_used(lift: Lift, agent: AgentTrajectory) -> Figure:
     solution = lift.dense
     uses = ergonomics_of(solution, agent).strength
     share = 100 * np.stack([use.share for use in uses])
-    figure, grid = panels(1, height=2.9, left=2.15, right=1.2)
+    figure, grid = panels(1, height=0.29 * len(uses), left=2.45 if len(uses) > ONE_ARM else 2.15, right=1.2)
     axes = grid[0][0]
     top = max(50.0, float(share.max()))
     edges = np.concatenate([[0.0], (percent(solution.time)[1:] + percent(solution.time)[:-1]) / 2, [100.0]])
     image = axes.pcolormesh(edges, np.arange(len(uses) + 1), share, cmap="Blues", vmin=0.0, vmax=top, rasterized=True)
-    axes.set_yticks(np.arange(len(uses)) + 0.5, [joint.label for joint in ANATOMY])
+    axes.set_yticks(np.arange(len(uses)) + 0.5, [joint.label for joint in anatomy_of(agent)])
     axes.invert_yaxis()
     axes.grid(False)
     for row, use in enumerate(uses):

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from liftopt.assessment.who import who_is
+from liftopt.assessment.who import hand_of, who_is
 from liftopt.multibody.trajectory import AgentTrajectory, grasps_of
-from liftopt.solution.grasp_loads import shares
+from liftopt.solution.grasp_loads import FREE_FALL, shares
+from liftopt.types import Array
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_style import FAINT, INK, LINES, VERMILION, draw, legend_above, panels, percent, time_axes
 from liftopt.viz.who import stand_opposite
@@ -32,19 +35,29 @@ def grasp_forces(lift: Lift) -> Figure:
     for axes in each:  # one scale for all
         axes.set_ylim(min(lows), max(highs))
         legend_above(axes, 4)
-    for i, (agent, part) in enumerate(zip(agents, shares(agents), strict=True)):
-        draw(share, solution.time, 100 * part, LINES[i % len(LINES)], agent.name, lift.factor)
-    share.axhline(100.0 / len(agents), color=FAINT, linewidth=0.8, zorder=1)
+    parts = _load_parts(agents)
+    for i, (name, part) in enumerate(parts.items()):
+        draw(share, solution.time, 100 * part, LINES[i % len(LINES)], name, lift.factor)
+    share.axhline(100.0 / len(parts), color=FAINT, linewidth=0.8, zorder=1)
     low, high = share.get_ylim()
     share.set_ylim(min(low, 0.0), max(high, 100.0))
     share.set(title="Load share: part of the vertical grasp force", ylabel="share of the load [%]")
-    legend_above(share, len(agents))
+    legend_above(share, len(parts))
     if low >= 0.0 and high <= 100.0:
         share.set_yticks(range(0, 101, 25))
     if moments:
         _moments(grid[len(grasps) + 1][0], lift)
     time_axes(grid, float(solution.time[-1]))
     return figure
+
+
+def _load_parts(agents: Sequence[AgentTrajectory]) -> dict[str, Array]:
+    """Return the share of the load (K,) of each agent by name; of each hand of one who lifts alone."""
+    if len(agents) > 1:
+        return {agent.name: part for agent, part in zip(agents, shares(agents), strict=True)}
+    (agent,) = agents
+    total = np.where(np.abs(agent.load[:, 2]) < FREE_FALL, np.nan, agent.load[:, 2])
+    return {grasp.name: agent.grasp_force[:, own, 2] / total for own, grasp in enumerate(agent.grasps)}
 
 
 def ground_reaction(lift: Lift, agent: AgentTrajectory) -> Figure:
@@ -106,7 +119,7 @@ def _components(axes: Axes, lift: Lift, agent: AgentTrajectory, own: int, cap: f
     time, force = lift.dense.time, agent.grasp_force[:, own]
     called = who_is(agent, lift.dense.agents).called
     if len(agent.grasps) > 1:
-        called = f"{agent.grasps[own].name.removeprefix(agent.name + '_')} hand of {called}"
+        called = f"the {hand_of(agent.grasps[own].name, who_is(agent, lift.dense.agents))} of {called}"
     labels = PAIRED if stand_opposite(lift.dense.scenario) else COMPONENTS
     for values, line, label in zip(force.T, LINES, labels, strict=False):
         draw(axes, time, values, line, label, lift.factor)

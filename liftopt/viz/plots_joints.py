@@ -23,14 +23,14 @@ ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
 
 
 def human_arm(lift: Lift, agent: AgentTrajectory) -> Figure:
-    """Return shoulder and elbow flexion: angle and torque (the predicted side of Figs. 13 and 14)."""
-    figure, grid = panels(2, 2, height=1.7)
-    curves = {curve.joint: curve for curve in human_curves(agent)}
-    for row, joint in enumerate(ARM):
-        _panel(grid[row][0], lift, curves[joint], "angle", LINES[0])
-        _panel(grid[row][1], lift, curves[joint], "torque", LINES[1])
-        for axes, quantity in zip(grid[row], ("angle", "torque"), strict=True):
-            axes.set_title(f"{curves[joint].label}: {quantity}")
+    """Return shoulder and elbow flexion: angle and torque (the predicted side of Figs. 13 and 14), of each arm."""
+    curves = [curve for curve in human_curves(agent) if curve.joint.rpartition("_")[2] in ARM]
+    figure, grid = panels(len(curves), 2, height=1.7)
+    for curve, (left, right) in zip(curves, grid, strict=True):
+        _panel(left, lift, curve, "angle", LINES[0])
+        _panel(right, lift, curve, "torque", LINES[1])
+        for axes, quantity in ((left, "angle"), (right, "torque")):
+            axes.set_title(f"{curve.label}: {quantity}")
             axes.set_ylabel(f"{quantity} [{UNIT[quantity]}], flexion +")
     time_axes(grid, float(lift.dense.time[-1]))
     return figure
@@ -38,12 +38,12 @@ def human_arm(lift: Lift, agent: AgentTrajectory) -> Figure:
 
 def human_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint angles of the person with their ranges of motion."""
-    return _grid(lift, human_curves(agent), "angle")
+    return _grid(lift, _side_by_side(human_curves(agent)), "angle")
 
 
 def human_torques(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint torques of the person with their strength."""
-    return _grid(lift, human_curves(agent), "torque")
+    return _grid(lift, _side_by_side(human_curves(agent)), "torque")
 
 
 def robot_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
@@ -54,6 +54,17 @@ def robot_angles(lift: Lift, agent: AgentTrajectory) -> Figure:
 def robot_torques(lift: Lift, agent: AgentTrajectory) -> Figure:
     """Return all joint torques of the robot with their limits (the predicted side of Figs. 17 and 18)."""
     return _grid(lift, _robot(lift, agent), "torque")
+
+
+def _side_by_side(curves: Sequence[JointCurve]) -> list[JointCurve]:
+    """Return joints so that a whole body has its legs beside its trunk, and its right arm beside the left one."""
+    parts: dict[str, list[JointCurve]] = {}
+    for curve in curves:
+        parts.setdefault(curve.part, []).append(curve)
+    if len(parts) == 1:
+        return list(curves)
+    columns = [[*parts["legs"], *parts["right arm"]], [*parts["trunk"], *parts["left arm"]]]
+    return [curve for pair in zip(*columns, strict=True) for curve in pair]
 
 
 def _robot(lift: Lift, agent: AgentTrajectory) -> tuple[JointCurve, ...]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
 from liftopt.assessment.who import listed, who_is
+from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.camera import Camera, straight
@@ -93,7 +94,7 @@ def _key(figure: Figure, axes: Axes, scale: float, force: float, solution: Solut
         for agent, (_, _, words) in zip(agents, cycle(ARROWS), strict=False)
     ]
     side = "the person's right" if facing else f"{who_is(lead_of(agents), agents).called}'s right, from ahead and above"
-    paths = "Lines: paths of the hands." if len(agents) > 1 else "Line: path of the hand."
+    paths = "Lines: paths of the hands." if len(list(grasps_of(agents))) > 1 else "Line: path of the hand."
     text = f"Seen from {side}. Arrows: force on the {solution.object.name} {listed(arrows)}. {paths}"
     lines = wrap(text, WORDS)
     old, room, at = figure.get_figheight(), LINE * (len(lines) - 1), figure.subplotpars

@@ -24,7 +24,7 @@ from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 from liftopt.viz.plots_data import Lift
-from liftopt.viz.report_agents import force_rows, means_words, reported, subject_words, team_words
+from liftopt.viz.report_agents import bodies_words, force_rows, means_words, reported, subject_words, team_words
 from liftopt.viz.report_clearance import clearance_rows
 from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
@@ -90,6 +90,8 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),
         "means": means_words(solution.agents),
+        "bodies": bodies_words(solution.persons),
+        "holds": sum(len(agent.grasps) for agent in solution.agents),
         "heights": grasp_heights(solution.scenario),
         "height_of": "the edges they hold" if by_grasps else "its underside",
         "paired": stand_opposite(solution.scenario),

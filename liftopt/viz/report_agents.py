@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.assessment.who import listed, who_is
+from liftopt.assessment.who import hand_of, listed, who_is
 from liftopt.ergonomics.lift import subject_in
+from liftopt.ergonomics.limbs import has_legs, holding_arms
 from liftopt.ergonomics.measures import Ergonomics, ergonomics_of
 from liftopt.multibody.joint_curves import human_curves, robot_curves
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory, grasps_of
@@ -21,6 +22,14 @@ from liftopt.viz.plots import figure_names
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_tables import joint_rows
 from liftopt.viz.who import robot_of
+
+# Without legs that move, and with them.
+BODIES = {
+    False: "a chain of 13 joints: three that stand for the ground contact and carry the body weight, three of the "
+    "trunk, seven of the right arm; legs, pelvis, head and left arm have their mass but do not move on their own.",
+    True: "a tree of 20 joints on feet that stay on the floor: ankle, knee and hip, at which both legs bend as one, "
+    "three of the trunk, and seven of each arm.",
+}
 
 
 @dataclass(frozen=True)
@@ -71,7 +80,7 @@ def force_rows(lift: Lift, summary: dict[str, Any]) -> list[dict[str, str]]:
         size = f"{force['peak_N']:.1f} N (cap {forces['limit_N']:g} N)"
         called = who_is(agent, agents).called.removeprefix("the ")
         if len(agent.grasps) > 1:
-            called += f", {grasp.name.removeprefix(agent.name + '_')} hand"
+            called += f", {hand_of(grasp.name, who_is(agent, agents))}"
         rows.append(_row(called, "" if own else part, size, force["at_s"]))
     if "squeeze" in forces:
         squeeze = forces["squeeze"]
@@ -125,6 +134,29 @@ def means_words(agents: Sequence[AgentTrajectory]) -> str:
     """Return with what they hold: "the person with the right hand, the robot with its gripper"."""
     told = {}
     for agent in agents:
-        word = "the" if who_is(agent, agents).is_alone else "each"
-        told[agent.kind] = f"{word} {agent.kind} with {'the right hand' if agent.kind == 'person' else 'its gripper'}"
-    return ", ".join(told.values())
+        if agent.kind == "person":
+            arms = [arm.side for arm in holding_arms(agent)]
+            word = "both hands" if len(arms) > 1 else f"the {arms[0]} hand"
+        else:
+            word = "its gripper"
+        told[agent.name] = agent, word
+    words = []
+    for kind in dict.fromkeys(agent.kind for agent in agents):
+        same = [(agent, word) for agent, word in told.values() if agent.kind == kind]
+        if len({word for _, word in same}) == 1:
+            words.append(f"{'the' if len(same) == 1 else 'each'} {kind} with {same[0][1]}")
+        else:
+            words += [f"{agent.name} with {word}" for agent, word in same]
+    return ", ".join(words)
+
+
+def bodies_words(persons: Sequence[AgentTrajectory]) -> str:
+    """Return how people are modelled, a sentence for each kind of body; nothing where there are none."""
+    words = []
+    for legs, text in BODIES.items():
+        same = [person.name for person in persons if has_legs(person) == legs]
+        if same:
+            alone = "The person is" if len(persons) == 1 else "Each person is"
+            who = alone if len(same) == len(persons) else f"{listed(same)} {'is' if len(same) == 1 else 'are each'}"
+            words.append(f"{who} {text} ")
+    return "".join(words)

@@ -31,6 +31,7 @@ def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str
         rows.append(
             {
                 "label": curve.label,
+                "part": curve.part,
                 "q": f"{_number(curve.q.min())} to {_number(curve.q.max())}",
                 "q_limits": _span(curve.q_limits),
                 "tau": f"{_number(curve.tau[at], 2)} at {dense.time[at]:.2f} s",

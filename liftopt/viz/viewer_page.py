@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from liftopt.assessment.who import who_is
+from liftopt.assessment.who import hand_of, who_is
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz.meshcat_files import LICENCES, VIEWER, meshcat_text
@@ -62,7 +62,7 @@ def playback_page(
         "duration": max(float(cast.playback.time[-1]) for cast in casts),
         "metres_per_newton": scale,
         "views": [view.plain() for view in views_of(casts)],
-        "agents": _agents(casts),
+        "hands": _hands(casts),
         "object": solution.object.name,
         "nearest_colour": _hex(LINE),
         "labels": _labels(casts),
@@ -117,12 +117,15 @@ def _nearest(cast: Cast) -> dict[str, Any] | None:
     }
 
 
-def _agents(casts: Sequence[Cast]) -> list[dict[str, str]]:
-    """Return name, colour and words of everybody whose force is shown."""
+def _hands(casts: Sequence[Cast]) -> list[dict[str, str]]:
+    """Return grasp, colour and words of every hand whose force is shown."""
     agents, rows = agents_in(casts), []
     for agent in agents:
-        who = f"the {WORDS[agent.kind]}" if who_is(agent, agents).is_alone else agent.name
-        rows.append({"name": agent.name, "who": who, "colour": _hex(colour_of(agents, agent))})
+        who = who_is(agent, agents)
+        called = f"the {WORDS[agent.kind]}" if who.is_alone else agent.name
+        for grasp in agent.grasps:
+            words = called if len(agent.grasps) == 1 else f"{called}'s {hand_of(grasp.name, who)}"
+            rows.append({"name": grasp.name, "who": words, "colour": _hex(colour_of(agents, agent))})
     return rows
 
 

@@ -88,8 +88,9 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
     }
 
 
-def test_shipped_scenarios_differ_in_the_reading_of_table_5_and_in_the_objective_only() -> None:
-    assert shipped_scenarios() == ("table5", "table5_bare", "table5_free", "table5_near", "table5_paper")
+def test_shipped_scenarios_of_table_5_differ_in_its_reading_and_in_the_objective_only() -> None:
+    readings = ("table5", "table5_bare", "table5_free", "table5_near", "table5_paper")
+    assert shipped_scenarios() == ("floor_box", "pallet", *readings, "two_people")
     assert load_scenario("table5_near") == changed("task.standing_distance=1.70", "name=table5_near")
     free = ["task.start.human_distance=free", "task.end.human_distance=free", "name=table5_free"]
     assert load_scenario("table5_free") == changed(*free)
@@ -267,7 +268,7 @@ def test_unreadable_paths_are_one_clear_error(tmp_path: Path) -> None:
         (tmp_path / "none.toml", "no such file, nor a shipped scenario"),
         (
             "tabel5",
-            r"no such file, nor a shipped scenario \(table5, table5_bare, table5_free, table5_near, table5_paper\)",
+            r"no such file, nor a shipped scenario \(floor_box, pallet, table5, .*, table5_paper, two_people\)",
         ),
         ("/dev/zero", "is not a file"),
         ("x" * 5000, "cannot be read: File name too long"),

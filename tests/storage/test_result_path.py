@@ -99,7 +99,8 @@ def test_what_is_no_result_is_told_with_what_was_meant(path: str, said: str) -> 
         ("empty", "is not a file, nor a result folder with a solution.nc"),
         (
             "nowhere/x.toml",
-            "no such file, nor a shipped scenario (table5, table5_bare, table5_free, table5_near, table5_paper)",
+            "no such file, nor a shipped scenario (floor_box, pallet, table5, table5_bare, table5_free, table5_near, "
+            "table5_paper, two_people)",
         ),
     ],
 )

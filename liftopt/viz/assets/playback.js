@@ -142,7 +142,7 @@
     data.lifts.forEach((lift, i) => add(line, "td", "", `${key}-${i}`));
     return line;
   }
-  data.agents.forEach((agent) => row(agent.colour, `force of ${agent.who}`, `force-${agent.name}`));
+  data.hands.forEach((hand) => row(hand.colour, `force of ${hand.who}`, `force-${hand.name}`));
   row(object_colour, `height of the ${data.object}'s centre`, "height");
   if (data.lifts.some((lift) => lift.nearest)) {
     row(data.nearest_colour, "nearest two bodies", "nearest").className = data.lifts.length > 1 ? "spare" : "";

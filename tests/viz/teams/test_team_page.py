@@ -29,8 +29,8 @@ def test_two_people_are_told_by_name(two_people: Any) -> None:
     assert titles["front"] == "straight at anna's face, through everybody else"
     assert titles["ben"] == "ben, from head to foot"
     assert titles["hands"] == "hands and object"
-    assert [agent["who"] for agent in data["agents"]] == ["anna", "ben"]
-    assert len({agent["colour"] for agent in data["agents"]}) == 2
+    assert [hand["who"] for hand in data["hands"]] == ["anna", "ben"]
+    assert len({hand["colour"] for hand in data["hands"]}) == 2
     assert [label["text"] for label in data["labels"]] == ["anna", "ben"]
     # Above the heads: the statures of the scenario and 10 cm, where they stand.
     np.testing.assert_allclose([label["at"] for label in data["labels"]], [[0, 0, 1.72], [1.3, 0, 1.92]], atol=1e-9)
@@ -40,7 +40,7 @@ def test_only_agents_of_a_kind_that_there_are_several_of_have_names(two_robots: 
     data = _data(playback_page(two_robots.solution))
     names = [view["name"] for view in data["views"]]
     assert names == ["three-quarter", "side", "front", "top", "person", "near", "far", "hands"]
-    assert [agent["who"] for agent in data["agents"]] == ["the human", "near", "far"]
+    assert [hand["who"] for hand in data["hands"]] == ["the human", "near", "far"]
     assert [label["text"] for label in data["labels"]] == ["near", "far"]
     assert data["object"] == "plank"
 
@@ -75,7 +75,7 @@ def test_everything_that_an_agent_moves_is_in_its_preset(team: Any) -> None:
 def test_a_lift_beside_one_of_another_team(two_people: Any, two_robots: Any) -> None:
     """Rows for everybody in either; a label for each lift, and for those that a lift has several of."""
     data = _data(playback_page(two_people.solution, two_robots.solution))
-    assert [agent["name"] for agent in data["agents"]] == ["anna", "ben", "human", "near", "far"]
+    assert [hand["name"] for hand in data["hands"]] == ["anna", "ben", "human", "near", "far"]
     assert [label["text"] for label in data["labels"]] == ["two_people", "anna", "ben", "two_robots", "near", "far"]
 
 
