@@ -67,5 +67,7 @@ def dry_run_text(args: argparse.Namespace, progress: Progress | None = None) -> 
         summary = summarised(run, reach_to_others(solution.scenario, robot))
         names = write_dry_run(run, summary, folder)
     others = [agent.kind for agent in solution.agents if agent.name != robot]
-    followers = "The person's hand is" if others == ["person"] else "What the others hold is"
+    hands = sum(len(agent.grasps) for agent in solution.agents if agent.name != robot)
+    alone = "The person's hand is" if hands == 1 else "The middle of the person's hands is"
+    followers = alone if others == ["person"] else "What the others hold is"
     return f"{summary_text(summary, followers)}\nWritten to {out}: {', '.join(names)}\n"

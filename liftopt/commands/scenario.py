@@ -15,7 +15,8 @@ def add_scenario_parser(commands: Any) -> None:
         "scenario",
         help="the scenario of a recorded lift, to predict it",
         description="Write the scenario of a recorded lift: the person, where the hand starts and ends, and how long "
-        "it takes. A robot, which cannot shape the motion, stands for the other hand and bears the other half.",
+        "it takes. A whole person lifts alone with both hands; to one of trunk and right arm a robot, which cannot "
+        "shape the motion, stands for the other hand and bears the other half.",
         allow_abbrev=False,
     )
     parser.add_argument("recorded", metavar="FOLDER", help="that liftopt mocap wrote")
@@ -44,8 +45,9 @@ def scenario_text(args: argparse.Namespace) -> str:
     head = f"# Made from {source}; what stands for what: liftopt/lab/mocap/recorded_scenario.py.\n"
     write_new("--out", Path(args.out), head + scenario.to_toml())
     (low, high), ends = grasp_heights(scenario), ("start", "end")
-    near, far = (scenario.value(f"task.{end}.human_distance") for end in ends)
+    what, key = ("box's centre", "x") if lift.whole else ("hand", "human_distance")
+    near, far = (scenario.value(f"task.{end}.{key}") for end in ends)
     return (
         f"{scenario.object.mass:g} kg from {low:g} to {high:g} m in {scenario.duration:g} s, "
-        f"the hand {near:g} to {far:g} m ahead of the feet\nWritten to {args.out}\n"
+        f"the {what} {near:g} to {far:g} m ahead of the feet\nWritten to {args.out}\n"
     )

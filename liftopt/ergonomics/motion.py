@@ -33,6 +33,8 @@ class Motion:
         wrist_height: of the wrist joint above the floor [m].
         path_over_chord: length of the hand's path over the distance between its ends.
         speed_peaks: number of peaks of the hand's speed.
+        trunk_inclination: of the trunk against the vertical, forward.
+        knee: flexion; None of one whose legs do not move.
     """
 
     elbow: Array
@@ -45,6 +47,8 @@ class Motion:
     wrist_height: Array
     path_over_chord: float
     speed_peaks: int
+    trunk_inclination: Array
+    knee: Array | None
 
 
 def motion_of(lift: Lift, person: AgentTrajectory) -> Motion:
@@ -72,6 +76,8 @@ def motion_of(lift: Lift, person: AgentTrajectory) -> Motion:
         wrist_height=_wrist_height(lift, person, arm),
         path_over_chord=length / float(np.linalg.norm(path[-1] - path[0])),
         speed_peaks=_peaks(np.linalg.norm(np.gradient(path, lift.time, axis=0), axis=1)),
+        trunk_inclination=posture.trunk_inclination,
+        knee=posture.knee if person.stance is not None else None,
     )
 
 

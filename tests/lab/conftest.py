@@ -12,13 +12,15 @@ import pinocchio as pin
 import pytest
 
 from liftopt.lab.mocap.marker_map import MarkerMap
-from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.mocap.recorded_lift import RecordedLift, RecordedWhole
 from liftopt.lab.mocap.recording import Recording
 from liftopt.multibody.dh import human_rows
 from liftopt.multibody.person.anthropometry import LinkLengths, link_lengths
 from liftopt.multibody.person.human import human_chain, human_root
 from liftopt.multibody.person.segments import SEGMENTS
 from liftopt.multibody.person.subject import Subject
+from liftopt.multibody.person.whole_body import WholeLengths
+from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.multibody.urdf import FixedLink, JointBounds, chain_robot, load_model, urdf_text
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
@@ -144,6 +146,7 @@ def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, rais
     """Return a record of the predicted motion: late by a share of the lift, values scaled, angles raised."""
     dense = resample(solution, 10)
     human, lifted = dense.agents[0], dense.object
+    elbow = human.joint_names.index("human_right_Q7" if human.stance else "human_Q7")
     duration = float(dense.time[-1])
     time = np.arange(round((duration + 2 * STANDING) * 200) + 1) / 200
 
@@ -172,17 +175,39 @@ def _as_recorded(solution: Solution, late: float = 0.0, scale: float = 1.0, rais
         hand_position=over(human.p_world_hold),
         hand_force=scale * over(human.load),
         force_from="measured: made up",
-        ground_force=none,
+        ground_force=scale * over(human.ground_force) if human.stance else none,
         ground_moment=none,
         plate_force=None,
         markers=(),
         residual=np.zeros((len(time), 0)),
-        elbow_flexion=-over(human.q[:, [9]])[:, 0],
+        elbow_flexion=-over(human.q[:, [elbow]])[:, 0],
         object_position=over(lifted.pose[:, :3]),
         object_quaternion=over(lifted.quaternion),
         carried=(STANDING, STANDING + duration),
         gaps=(),
         notes=(),
+        whole=_whole(human, over, subject, scale) if human.stance else None,
+    )
+
+
+def _whole(human: AgentTrajectory, over: Callable[[Array], Array], subject: Subject, scale: float) -> RecordedWhole:
+    lengths, pressure = WholeLengths.of(subject), human.centre_of_pressure
+    assert pressure is not None
+    knee = over(human.q[:, [human.joint_names.index("human_knee")]])
+    elbows = [human.joint_names.index(f"human_{side}_Q7") for side in ("right", "left")]
+    shape = (len(knee), 2, 3)
+    return RecordedWhole(
+        grasp_position=over(human.grasp_position).reshape(shape),
+        grasp_force=scale * over(human.grasp_force).reshape(shape),
+        centre_of_pressure=over(pressure),
+        plate_centre=None,
+        elbow_flexion=-over(human.q[:, elbows]),
+        knee_flexion=np.hstack([knee, knee]),
+        left=lengths.left,
+        ankle=lengths.ankle,
+        knee=lengths.knee,
+        hip=lengths.hip,
+        ahead=lengths.ahead,
     )
 
 

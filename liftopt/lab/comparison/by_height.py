@@ -39,7 +39,8 @@ def predicted_angles(motion: Motion) -> dict[str, Array]:
 
     Their wrist deviation is positive to the thumb.
     """
-    return {
+    legs = {} if motion.knee is None else {"knee_flex": motion.knee, "trunk_incl": motion.trunk_inclination}
+    return legs | {
         "elbow_flex_3d": motion.elbow,
         "shoulder_elev_3d": motion.humeral_elevation,
         "shoulder_abd": motion.abduction,
@@ -70,16 +71,20 @@ def read_height_curves(file: Path) -> HeightCurves:
 
 def at_heights(motion: Motion, height: Array) -> dict[str, Array]:
     """Return the angles (H,) of a motion where its wrist first passes each height [m]; NaN where it does not."""
-    angles, above = predicted_angles(motion), motion.wrist_height
-    found = {name: np.full(len(height), np.nan) for name in angles}
+    angles = predicted_angles(motion)
+    return {name: first_passes(motion.wrist_height, values, height) for name, values in angles.items()}
+
+
+def first_passes(above: Array, values: Array, height: Array) -> Array:
+    """Return values (K,) where ``above`` (K,) first passes each height (H,); NaN where it does not."""
+    found = np.full(len(height), np.nan)
     for i, level in enumerate(height):
         crossing = np.flatnonzero((above[:-1] - level) * (above[1:] - level) <= 0.0)
         if not len(crossing):
             continue
         k = int(crossing[0])
         share = (level - above[k]) / (above[k + 1] - above[k]) if above[k + 1] != above[k] else 0.0
-        for name, values in angles.items():
-            found[name][i] = values[k] + share * (values[k + 1] - values[k])
+        found[i] = values[k] + share * (values[k + 1] - values[k])
     return found
 
 

@@ -9,22 +9,23 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.lab.comparison.comparison import SAMPLES, SHARE, Comparison
+from liftopt.lab.comparison.comparison import SHARE, Comparison
 from liftopt.lab.comparison.motion_start import lift_start
+from liftopt.lab.comparison.normalised import compared, over_lift
+from liftopt.lab.comparison.person import person_comparisons
 from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.meant import the_person, the_robot
 from liftopt.lab.mocap.recorded_lift import RecordedLift
 from liftopt.lab.robot.robot_record import RobotRecord
-from liftopt.multibody.joint_curves import ANATOMY, human_curves, robot_curves
+from liftopt.multibody.joint_curves import robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.agents import Robot
 from liftopt.scenario.build import agent_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 
 FACTOR = 10  # as the plots
-NO_FORCE = "none given"  # how a recorded lift says that its hand was taken as empty
 ELSEWHERE = 5.0  # deg; a robot that starts farther from where it should may have run another lift
 CLEARLY = 0.7  # of the misfit: another reading of the efforts that leaves less than this is worth a word
 
@@ -79,49 +80,11 @@ def experiment(
     dense = resample(solution, FACTOR)
     notes: list[str] = []
     found = [
-        *_person(dense, person, mocap, notes),
+        *person_comparisons(dense, person, mocap, notes),
         *_hand(dense, person, forces, forces_lift, notes),
         *_robot(dense, robot_name, robot, notes),
     ]
     return Experiment(tuple(found), float(solution.time[-1]), tuple(notes))
-
-
-def _person(
-    dense: Solution, person: str | None, records: Sequence[RecordedLift], notes: list[str]
-) -> Iterator[Comparison]:
-    if not records:
-        return
-    human = the_person(dense, person)
-    for curve, joint in zip(human_curves(human), ANATOMY, strict=True):
-        columns = [(record, record.joint_names.index(f"human_{joint.joint}")) for record in records]
-        angles = [record.over_lift(np.degrees(joint.sign * record.q[:, i]), SAMPLES) for record, i in columns]
-        torques = [record.over_lift(joint.sign * record.tau[:, i], SAMPLES) for record, i in columns]
-        yield _compared("human_angle", joint.joint, curve.label, "deg", dense, curve.q, angles)
-        yield _compared("human_torque", joint.joint, curve.label, "Nm", dense, curve.tau, torques)
-    for axis, name, label in ((0, "x", "Hand, forward of its start"), (2, "z", "Hand, above its start")):
-        paths = [record.over_lift(record.hand_position[:, axis], SAMPLES) for record in records]
-        predicted = human.p_world_hold[:, axis] - human.p_world_hold[0, axis]
-        yield _compared("hand_path", name, label, "m", dense, predicted, [path - path[0] for path in paths])
-    loaded = [record for record in records if not record.force_from.startswith(NO_FORCE)]
-    if loaded:
-        vertical = [record.over_lift(record.hand_force[:, 2], SAMPLES) for record in loaded]
-        label = "Vertical force (mocap)"
-        yield _compared("hand_force", "mocap", label, "N", dense, human.load[:, 2], vertical)
-    asked = dense.scenario.agents[human.name]
-    assert isinstance(asked, Person)
-    for record in records:
-        subject, start = record.subject, record.carried or (record.time[0], record.time[-1])
-        what = "while the object is carried" if record.carried else "all of the recording, which shows no object"
-        notes.append(
-            f"{record.source}: lift from {start[0]:.2f} to {start[1]:.2f} s ({what}), {start[1] - start[0]:.2f} s; "
-            f"predicted {dense.time[-1]:.2f} s"
-        )
-        notes.append(f"{record.source}: force of the hand behind the joint torques: {record.force_from}")
-        if (subject.stature, subject.mass, subject.sex) != (asked.stature, asked.mass, asked.sex):
-            notes.append(
-                f"{record.source}: the person recorded is {subject.stature:.3f} m, {subject.mass:g} kg, {subject.sex}; "
-                f"predicted is one of {asked.stature:.3f} m, {asked.mass:g} kg, {asked.sex}"
-            )
 
 
 def _hand(
@@ -151,7 +114,7 @@ def _hand(
         notes.append("force sensors: each trial's first and last sample are taken for the lift's start and end")
     notes.append("force sensors: fingers minus thumb is compared with the vertical force, as if the object stays level")
     label = "Vertical force (sensors)"
-    yield _compared("hand_force", "sensors", label, "N", dense, the_person(dense, person).load[:, 2], trials)
+    yield compared("hand_force", "sensors", label, "N", dense, the_person(dense, person).load[:, 2], trials)
 
 
 def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], notes: list[str]) -> Iterator[Comparison]:
@@ -166,7 +129,7 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
         [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
     )
     for i, curve in enumerate(curves):
-        yield _compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
+        yield compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
     planned = np.array([curve.q[0] for curve in curves])
     for record, (_, how, known), own in zip(records, starts, np.degrees(angles), strict=True):
         notes.append(f"{record.source}: the lift begins {how} and lasts {duration:g} s")
@@ -184,7 +147,7 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
         return
     torques = np.stack([record.over_share(tau, SHARE, at, duration) for record, tau, at in felt])
     for i, curve in enumerate(curves):
-        yield _compared("robot_torque", curve.joint, curve.label, "Nm", dense, curve.tau, torques[:, :, i])
+        yield compared("robot_torque", curve.joint, curve.label, "Nm", dense, curve.tau, torques[:, :, i])
     notes.append(
         "efforts are taken for the joints' torques with gravity's part in them, positive as the joint's angle; "
         "JointState does not say which a robot means"
@@ -198,7 +161,7 @@ def _other_reading(dense: Solution, agent: AgentTrajectory, q: Array, effort: Ar
     full, data = np.zeros((len(q), robot.model.nq)), robot.model.createData()
     full[:, moving] = q
     gravity = np.array([pin.computeGeneralizedGravity(robot.model, data, row)[moving] for row in full])
-    predicted = np.stack([_over_lift(dense, column) for column in agent.tau[:, moving].T], axis=1)
+    predicted = np.stack([over_lift(dense, column) for column in agent.tau[:, moving].T], axis=1)
     readings = {
         "as they are": effort,
         "with the other sign": -effort,
@@ -213,13 +176,3 @@ def _other_reading(dense: Solution, agent: AgentTrajectory, q: Array, effort: Ar
         f"the efforts fit the prediction better {best}: {misfit[best]:.2f} Nm (rms of all joints) against {plain:.2f} "
         "as they are; find out what the robot means before reading the torques"
     ]
-
-
-def _compared(
-    group: str, name: str, label: str, unit: str, dense: Solution, predicted: Array, trials: Sequence[Array] | Array
-) -> Comparison:
-    return Comparison(group, name, label, unit, _over_lift(dense, predicted), np.stack(list(trials)))
-
-
-def _over_lift(dense: Solution, values: Array) -> Array:
-    return np.asarray(np.interp(SHARE * dense.time[-1], dense.time, values), float)

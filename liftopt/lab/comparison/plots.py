@@ -22,11 +22,14 @@ GROUPS = {
     "human_torque": "Person, joint torque",
     "hand_path": "Hand, path",
     "hand_force": "Hand, force on the object",
+    "ground": "Ground, what it bears",
     "robot_angle": "Robot, joint angle",
     "robot_torque": "Robot, joint torque",
 }
 QUANTITY = {"deg": "angle", "Nm": "torque", "m": "way", "N": "force"}
-ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
+# Shoulder and elbow flexion, the joints of Figs. 13 and 14; of a whole person on both sides.
+ARM = ("Q5", "Q7", "right_Q5", "right_Q7", "left_Q5", "left_Q7")
+LEGS_AND_TRUNK = ("ankle", "knee", "hip", "Q2")
 NOTHING = "\N{EM DASH}"
 LEAST = 5e-4  # in the units shown; less is shown as 0
 HEADER = ("unit", "pred.", "rec.", "differ", "RMSE", "corr.", "phase", "spread")
@@ -41,12 +44,24 @@ class ComparisonPlot:
     shown: Callable[[Experiment], Sequence[Comparison]]
 
 
+def _with_legs(joints: Sequence[Comparison]) -> list[Comparison]:
+    """Return those of legs and trunk, if there are legs."""
+    shown = [one for one in joints if one.name in LEGS_AND_TRUNK]
+    return shown if any(one.name == "knee" for one in shown) else []
+
+
 PLOTS = (
     ComparisonPlot(
         "compared_human_arm",
         "Shoulder and elbow flexion of the person, angle and torque, predicted and recorded. Figs. 13 and 14 of the "
         "paper.",
         lambda found: [one for one in found.group("human_angle", "human_torque") if one.name in ARM],
+    ),
+    ComparisonPlot(
+        "compared_human_legs",
+        "Ankle, knee, hip and trunk flexion of a whole person, angle and torque of both legs together, predicted and "
+        "recorded.",
+        lambda found: _with_legs(found.group("human_angle", "human_torque")),
     ),
     ComparisonPlot(
         "compared_human_angles",
@@ -62,6 +77,11 @@ PLOTS = (
         "compared_hand",
         "Path of the hand and its force on the object, predicted and recorded. Fig. 15 of the paper.",
         lambda found: found.group("hand_path", "hand_force"),
+    ),
+    ComparisonPlot(
+        "compared_ground",
+        "What the ground bears of a whole person: vertical force and centre of pressure, predicted and recorded.",
+        lambda found: found.group("ground"),
     ),
     ComparisonPlot(
         "compared_robot_angles",

@@ -117,10 +117,10 @@ def both_hands_force(
     what = f"of the force that moves {load.mass:g} kg as the object moved"
     left = 1.0 - load.share if load.left_share is None else load.left_share
     for hand, share in enumerate((load.share, left)):
-        other = forces[1 - hand]
-        if forces[hand] is not None:
+        if series[hand] is not None:
             continue
-        if other is not None and words[1 - hand] and (hand == 0 or load.left_share is None):
+        other = forces[1 - hand] if series[1 - hand] is not None else None
+        if other is not None and (hand == 0 or load.left_share is None):
             forces[hand] = np.where(moving.any(axis=1, keepdims=True), moving - other, 0.0)
             words[hand] = f"estimated: what the other hand leaves {what}"
         else:

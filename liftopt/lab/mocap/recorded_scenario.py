@@ -1,6 +1,7 @@
 """A recorded lift as a scenario: the same person, object, start, end and duration, to be predicted and compared.
 
-Who records a lift has a person with two hands on a box; who predicts one has a person's right arm and a robot on
+A whole person lifts alone, with both hands (``recorded_whole_scenario``). Of trunk and right arm it is as follows. Who
+records a lift has a person with two hands on a box; who predicts one has a person's right arm and a robot on
 either edge of an object. Common to both is that the object hangs on two carriers. So the robot stands for the left arm:
 
 - The object has its whole mass, and the robot's grasp is the recorded hand mirrored through the object's centre. At two
@@ -23,6 +24,7 @@ import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.mocap.recorded_whole_scenario import whole_scenario
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.person.human import NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name, load_model
@@ -38,8 +40,8 @@ WIDTH, HEIGHT = 0.3, 0.3  # m of the object: they move the centre of mass, which
 def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recorded") -> Scenario:
     """Return the scenario of a recorded lift.
 
-    Places are those of the hand against the base of the spine, at the start and the end of the time in which the object
-    is carried; heights are above the ground that the stature implies.
+    Without a whole person places are those of the hand against the base of the spine, at the start and the end of the
+    time in which the object is carried; heights are above the ground that the stature implies.
 
     Args:
         lift: with an object.
@@ -55,6 +57,8 @@ def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recor
         raise InputError("--lift", NO_VALUE, shows)
     if lift.carried is None or lift.object_position is None or lift.carried[0] >= lift.carried[1]:
         raise InputError(lift.source, NO_VALUE, "shows no object that is carried: start and end are not known")
+    if lift.whole is not None:
+        return whole_scenario(lift, lift.whole, mass, name)
     hand, lifted = lift.over_lift(lift.hand_position, 2), lift.over_lift(lift.object_position, 2)
     place = hand - lift.over_lift(_base_travel(lift), 2)
     # The hand, mirrored through the object's centre, seen from above: between the two carriers lies this.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ B,twist,0,0,nan,nan
 def motion(height: Any, elbow: Any) -> Motion:
     """Return a motion in which only wrist and elbow move."""
     zero = np.zeros(len(height))
-    return Motion(np.asarray(elbow, float), *[zero] * 6, np.asarray(height, float), 1.0, 1)
+    return Motion(np.asarray(elbow, float), *[zero] * 6, np.asarray(height, float), 1.0, 1, zero, None)
 
 
 def test_the_mean_is_of_the_trials_that_passed(tmp_path: Path) -> None:
@@ -48,6 +49,16 @@ def test_difference_over_the_heights_of_both(tmp_path: Path) -> None:
     off = rmse_by_height(motion([0.95, 1.05, 1.15], [62.0, 66.0, 76.0]), read_height_curves(tmp_path / "curves.csv"))
     assert off["elbow_flex_3d"] == pytest.approx(np.sqrt((2.0**2 + 1.0**2) / 2))
     assert off["twist"] == 0.0
+
+
+def test_those_with_legs_have_knees_too() -> None:
+    """Knees straighten from 80 to 20 deg and the trunk from 40 to 10 as the wrist rises from 0.5 to 1.0 m."""
+    rising = motion([0.5, 1.0], [30.0, 30.0])
+    legs = replace(rising, knee=np.array([80.0, 20.0]), trunk_inclination=np.array([40.0, 10.0]))
+    found = at_heights(legs, np.array([0.5, 0.75]))
+    np.testing.assert_allclose(found["knee_flex"], [80.0, 50.0])
+    np.testing.assert_allclose(found["trunk_incl"], [40.0, 25.0])
+    assert "knee_flex" not in at_heights(rising, np.array([0.75]))
 
 
 def test_another_table_is_refused(tmp_path: Path) -> None:

@@ -12,25 +12,14 @@ import tomli_w
 import xarray
 
 from liftopt.commands.cli import main
+from tests.lab.marker_files import write_trc
 
 
 @pytest.fixture
 def files(truth: Any, tmp_path: Path) -> tuple[Path, Path]:
     """Return the lift of known motion as a TRC file, and its mapping without the person's mass."""
-    recording = truth.recording
-    names = "\t\t\t".join(recording.labels)
-    lines = [
-        "PathFileType\t4\t(X/Y/Z)\tlift.trc",
-        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
-        f"100\t100\t{len(recording.time)}\t{len(recording.labels)}\tmm\t100\t1\t{len(recording.time)}",
-        f"Frame#\tTime\t{names}\t\t",
-        "\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(len(recording.labels)) for axis in "XYZ"),
-        "",
-    ]
-    for k, (time, frame) in enumerate(zip(recording.time, recording.points, strict=True)):
-        lines.append(f"{k + 1}\t{time:.4f}\t" + "\t".join(f"{value:.5f}" for value in frame.ravel()))
     trc, mapping = tmp_path / "lift.trc", tmp_path / "map.toml"
-    trc.write_text("\n".join(lines) + "\n")
+    write_trc(truth.recording, trc)
     mapping.write_text(tomli_w.dumps(truth.mapping_dict | {"subject": {"sex": "female", "stature": 1.7}}))
     return trc, mapping
 

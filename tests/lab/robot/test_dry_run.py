@@ -249,3 +249,24 @@ def test_signs_of_the_arm_and_of_its_record_are_the_robots(runs):
     moved = run.trials[0].position[-1] - run.trials[0].position[0]
     planned = run.trajectory.position[-1] - run.trajectory.position[0]
     np.testing.assert_allclose(moved, planned, rtol=0, atol=5e-3)
+
+
+def test_a_whole_person_with_two_hands_is_dry_run_too(solved, tmp_path, capsys):
+    """Of three hands the robot's is its own: its place, Pinocchio's torques at rest under what it bears."""
+    result = solved("table5", "solver.intervals=10", "solver.starts=1", "human.body=whole")
+    solution = result.solution
+    plan, robot = Plan.of(solution), solution["robot"]
+    assert [len(agent.grasps) for agent in solution.agents] == [2, 1]
+    np.testing.assert_allclose(plan.tip[1], robot.p_world_hold[0], atol=1e-9)
+    np.testing.assert_allclose(plan.force[1], -robot.load[0], atol=1e-9)
+    _, model = agents_of(solution.scenario, solution.urdfs)
+    data, frame = model.model.createData(), model.model.getFrameId("robot_grasp")
+    for row, k in ((0, 0), (-1, -1)):
+        pull = np.concatenate([plan.force[row], plan.moment[row]])
+        jacobian = pin.computeFrameJacobian(model.model, data, robot.q[k], frame, pin.LOCAL_WORLD_ALIGNED)
+        torque = pin.computeGeneralizedGravity(model.model, data, robot.q[k]) - jacobian.T @ pull
+        np.testing.assert_allclose(plan.torque[row], JOINT_SIGNS * torque[robot.moving], atol=1e-6)
+    assert main(["dry-run", str(result.folder), "--trials", "1", "--out", str(tmp_path / "dry")]) == 0
+    printed = capsys.readouterr().out
+    assert "followed to the end" in printed
+    assert "The middle of the person's hands is led off" in printed
