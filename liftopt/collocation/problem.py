@@ -271,6 +271,12 @@ def _check(agents: tuple[Agent, ...], lifted: LiftedObject) -> None:
     if np.abs(lifted.model.inertias[1].lever).max() > STRUCTURAL_ZERO:
         raise ModelError(f"{lifted.name}: its body frame must be at its centre of mass")
     for agent in agents:
+        frames = [grasp.frame for grasp in agent.grasps]
+        if not frames or len({*frames} & {*agent.hands}) < len(frames):
+            raise ModelError(
+                f"{agent.name}: holds with {', '.join(frames) or 'nothing'}; each grasp takes one of its hands, "
+                f"{', '.join(agent.hands)}, and no two the same"
+            )
         weak = (agent.limits.tau_lower >= 0) | (agent.limits.tau_upper <= 0)
         for joint in np.array(agent.moving_joints)[weak]:
             raise ModelError(f"{joint}: torque limits must allow some torque in both directions")

@@ -21,6 +21,7 @@ from liftopt.viz.scene_clearance import line_commands, line_values, nearest_at
 from liftopt.viz.scene_commands import Command, clip, place, set_object
 from liftopt.viz.scene_gripper import gripper_parts
 from liftopt.viz.scene_mesh import Mesh, Ring, block, tube
+from liftopt.viz.scene_object import object_parts
 from liftopt.viz.scene_part import GROUND, Colour, Part
 from liftopt.viz.scene_person import SHIRT, hand_parts, person_parts
 from liftopt.viz.scene_pressure import pressure_body, pressure_part
@@ -29,7 +30,6 @@ from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
 from liftopt.viz.who import colour_of, robot_of
 
-WOOD: Colour = (0.78, 0.60, 0.38)
 CONCRETE: Colour = (0.42, 0.48, 0.58)
 SEE_THROUGH, GHOSTLY = 0.55, 0.15  # opacity of an obstacle, and of what a preset looks through
 SHADE = 0.75  # of a shirt against the arrows of who wears it
@@ -124,9 +124,7 @@ def parts_of(cast: Cast) -> list[Part]:
     """Return everything that is drawn of the agents, the object and the obstacles, at zero."""
     scenario = cast.solution.scenario
     parts = [part for agent in cast.solution.agents for part in _figure(cast, agent)]
-    size = (scenario.object.depth, scenario.object.width, scenario.object.height)
-    parts.append(Part(cast.solution.object.name, "top", WOOD, block((0.0, 0.0, 0.0), size, edge=0.003)))
-    return parts + [obstacle_part(obstacle) for obstacle in scenario.obstacles]
+    return parts + object_parts(scenario) + [obstacle_part(obstacle) for obstacle in scenario.obstacles]
 
 
 def obstacle_part(obstacle: Obstacle) -> Part:

@@ -53,7 +53,7 @@ def views_of(casts: Sequence[Cast]) -> list[View]:
     """Return the presets for one lift, or for two that are shown together."""
     agents = agents_in(casts)
     boxes = {agent.name: _agent_box(casts, agent) for agent in agents}
-    around = np.vstack(list(boxes.values()))
+    around = np.vstack([*boxes.values(), *(_object_box(cast) for cast in casts)])
     whole = _plain(np.vstack([around, *_obstacle_boxes(casts, around)]))
     points = [force.point + cast.offset for cast in casts for force in cast.playback.forces.values()]
     first = lead_of(agents)
@@ -144,6 +144,14 @@ def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
         points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
     room = 0.0 if agent.kind == "person" else ROBOT
     return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
+
+
+def _object_box(cast: Cast) -> Array:
+    """Return corners (2, 3) around the object over a lift, level or nearly so."""
+    lifted, track = cast.solution.scenario.object, cast.playback.bodies[cast.solution.object.name]
+    half = np.array([lifted.depth, lifted.width, lifted.height]) / 2.0
+    centre = track.position + cast.offset
+    return np.array([centre.min(axis=0) - half, centre.max(axis=0) + half])
 
 
 def _obstacle_boxes(casts: Sequence[Cast], around: Array) -> list[Array]:

@@ -170,3 +170,16 @@ def test_grasps_that_do_not_match_the_agents_are_refused(
 ) -> None:
     with pytest.raises(ModelError, match="2 grasp frames for 1 grasps"):
         Team.of((make_arm(1),), make_box(EDGES))
+
+
+@pytest.mark.parametrize("frames", [(), ("porter_nose",), ("porter_left_grasp", "porter_left_grasp")])
+def test_grasps_without_hands_of_their_own_are_refused(
+    make_two_handed: Callable[..., Agent], make_box: Callable[..., LiftedObject], frames: tuple[str, ...]
+) -> None:
+    agent = make_two_handed(moments=True)
+    holds = tuple(replace(agent.grasps[0], frame=frame) for frame in frames)
+    with pytest.raises(ModelError, match="each grasp takes one of its hands, porter_right_grasp, porter_left_grasp"):
+        Team.of(
+            (make_two_handed("other", moments=True), replace(agent, grasps=holds)),
+            make_box(np.eye(4)[: 2 + len(frames), :3]),
+        )

@@ -25,9 +25,10 @@ from liftopt.viz.person_bodies import PersonBodies, bodies_between, half_way
 from liftopt.viz.picture import bodies_at, picture_of
 from liftopt.viz.playback import playback_at
 from liftopt.viz.scene import Cast, parts_of
-from liftopt.viz.scene_hand import LEFT, PALM, RIGHT, hand_digits
+from liftopt.viz.scene_hand import FINGERS, LEFT, PALM, RIGHT, hand_digits
 from liftopt.viz.scene_mesh import Mesh
 from liftopt.viz.scene_person import person_parts
+from liftopt.viz.viewer_views import views_of
 
 SUBJECT = Subject(1.75, 75.0, "male")
 
@@ -181,3 +182,29 @@ def test_a_person_with_legs_is_in_the_picture(squat: Any) -> None:
         assert shirt.sum() > 150
         tops.append(np.nonzero(shirt)[0].min())
     assert tops[0] > tops[1] + 40
+
+
+def test_a_handle_is_a_slot_where_the_fingers_reach_in(team_solution: Callable[[str], Any]) -> None:
+    """Ben, who looks along -X, holds a handle on his right: on the side towards +Y, 5 cm below the top."""
+    lift = team_solution("two_whole").solution
+    playback = playback_at(lift, lift.time[[0, -1]])
+    (slot,) = (part for part in parts_of(Cast(lift, playback, "/lift")) if "handle" in part.name)
+    box = lift.scenario.object
+    assert (slot.name, slot.body) == ("handle_ben_right", box.name)
+    low, high = slot.mesh.vertices.min(axis=0), slot.mesh.vertices.max(axis=0)
+    assert low[1] < box.width / 2 < high[1] < box.width / 2 + 0.005
+    assert low[2] < box.height / 2 - 0.05 < high[2]
+    middle = playback.bodies[box.name].position[0]
+    # Fingers curl into the box through it: the ends of the last bones begin inside.
+    tips = [playback.bodies[f"ben_right_{finger}_3"].position[0] - middle for finger in FINGERS]
+    assert np.all(np.array(tips)[:, 1] < box.width / 2)
+
+
+def test_the_whole_lift_is_in_view_with_its_object(squat: Any) -> None:
+    """Corners of the box at both ends, by the scenario."""
+    playback = playback_at(squat, squat.time[[0, -1]])
+    low, high = np.array(views_of([Cast(squat, playback, "/lift")])[0].box)
+    box = squat.scenario.object
+    for pose in squat.object.pose[[0, -1]]:
+        half = np.array([box.depth, box.width, box.height]) / 2
+        assert np.all(low <= pose[:3] - half + 1e-3) and np.all(pose[:3] + half - 1e-3 <= high)

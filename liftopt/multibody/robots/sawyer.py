@@ -17,7 +17,8 @@ from liftopt.multibody.dh import (
 )
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots import sawyer_description as described
-from liftopt.multibody.robots.sawyer_shapes import TOOL_RADIUS, link_shapes, stand_shapes, tool_shapes
+from liftopt.multibody.robots.sawyer_shapes import link_shapes, stand_shapes, tool_shapes
+from liftopt.multibody.robots.tool import tool_body
 from liftopt.multibody.shapes import Shape
 from liftopt.multibody.urdf import (
     HELD,
@@ -66,7 +67,7 @@ def sawyer_chain(*, base_height: float, tool_length: float, tool_mass: float) ->
     _check(NAME, base_height, tool_length, tool_mass)
     bare = _bare_chain(NAME, base_height, tool_length)
     flange_from_tip = np.array([0.0, 0.0, -tool_length])
-    last = bare.inertias[-1] + _tool_body(tool_length, tool_mass).transformed(np.eye(3), flange_from_tip)
+    last = bare.inertias[-1] + tool_body(tool_length, tool_mass).transformed(np.eye(3), flange_from_tip)
     return DHChain(NAME, bare.rows, (*bare.inertias[:-1], last.rounded()))
 
 
@@ -190,15 +191,8 @@ def _tool(chain: DHChain, length: float, mass: float) -> tuple[FixedLink, ...]:
     if length == 0.0 and mass == 0.0:
         return ()
     flange = row_tail(chain.rows[-1]) @ translation(0.0, 0.0, -length)
-    body = _tool_body(length, mass)
+    body = tool_body(length, mass)
     return (FixedLink(f"{chain.name}_tool", link_name(chain.name, MOVING[-1]), flange, body, tool_shapes(length)),)
-
-
-def _tool_body(length: float, mass: float) -> BodyInertia:
-    """Return a uniform cylinder along z from the flange, in the flange's frame."""
-    across = mass * (3.0 * TOOL_RADIUS**2 + length**2) / 12.0
-    inertia = np.diag([across, across, mass * TOOL_RADIUS**2 / 2.0])
-    return BodyInertia(float(mass), np.array([0.0, 0.0, length / 2.0]), inertia)
 
 
 def _check(name: str, base_height: float, tool_length: float, tool_mass: float) -> None:

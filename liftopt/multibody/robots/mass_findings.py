@@ -1,0 +1,77 @@
+"""What is wrong with the masses and inertias of all that a robot's chain moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from liftopt.errors import NO_VALUE
+from liftopt.multibody.dh import BodyInertia
+from liftopt.multibody.robots.chain import RobotChain
+from liftopt.multibody.robots.data_finding import DataFinding, Severity
+from liftopt.types import Array
+
+# Moments of a rigid body: the largest is at most the sum of the others; files round theirs.
+TRIANGLE_TOLERANCE = 1e-3
+SHEET = "take mass properties from the maker's data sheet or CAD model"
+
+
+def mass_findings(chain: RobotChain) -> Iterator[DataFinding]:
+    """Give what is wrong; massless links that are one body with others are frames, and pass."""
+    broken = False
+    for link in chain.links:
+        for name in link.links:
+            for found in _of_link(name, chain.description.link(name).body):
+                broken = broken or found.severity == "refused"
+                yield found
+    if broken:
+        return
+    for number, link in enumerate(chain.links):
+        beyond = sum(other.body.mass for other in chain.links[number + 1 :])
+        yield from _of_body(f"link {link.joint.child}", link.body, beyond)
+
+
+def _of_link(name: str, body: BodyInertia) -> Iterator[DataFinding]:
+    where = f"link {name}"
+    if not np.isfinite(body.mass) or body.mass < 0.0:
+        message = "must be a number of kg from zero on"
+        yield DataFinding("mass.value", "refused", f"{where}: mass", body.mass, message, SHEET)
+    elif body.mass > 0.0 and not np.isfinite(body.com).all():
+        message = "its centre of mass is no point"
+        yield DataFinding("mass.centre", "refused", f"{where}: origin", NO_VALUE, message, SHEET)
+    elif body.mass > 0.0 and not np.isfinite(body.inertia).all():
+        message = "it has a mass, but moments of inertia are missing or no numbers"
+        yield DataFinding("inertia.value", "refused", f"{where}: inertia", NO_VALUE, message, SHEET)
+    elif body.mass > 0.0:
+        moments = principal_moments(body)
+        excess = moments[2] - moments[0] - moments[1]
+        if moments[0] > 0.0 and excess > TRIANGLE_TOLERANCE * moments[2]:
+            message = f"no body has it: the largest is more than the other two together, {_shown(moments)} kg m^2"
+            yield DataFinding("inertia.triangle", "warned", f"{where}: principal moments", NO_VALUE, message, SHEET)
+
+
+def _of_body(where: str, body: BodyInertia, beyond: float) -> Iterator[DataFinding]:
+    """Give what is wrong with a body that a joint moves, ``beyond`` [kg] being what hangs on it further out."""
+    if body.mass == 0.0:
+        severity: Severity = "warned" if beyond > 0.0 else "refused"
+        message = "a joint moves it, and it has no mass" + (", only what it carries has" if beyond > 0.0 else "")
+        yield DataFinding("mass.zero", severity, f"{where}: mass", 0.0, message, SHEET)
+        return
+    moments = principal_moments(body)
+    if moments[0] < 0.0 or (moments[0] == 0.0 and beyond == 0.0):
+        message = f"must be positive, and are {_shown(moments)} kg m^2"
+        yield DataFinding("inertia.positive", "refused", f"{where}: principal moments", NO_VALUE, message, SHEET)
+    elif moments[0] == 0.0:
+        message = f"one is zero, {_shown(moments)} kg m^2: a point or a rod turns without effort"
+        yield DataFinding("inertia.zero", "warned", f"{where}: principal moments", NO_VALUE, message, SHEET)
+
+
+def principal_moments(body: BodyInertia) -> Array:
+    """Return the principal moments of inertia (3,), the smallest first [kg m^2]; rounding below zero is zero."""
+    moments = np.linalg.eigvalsh((body.inertia + body.inertia.T) / 2.0)
+    return np.where(np.abs(moments) <= 1e-12 * np.abs(moments).max(), 0.0, moments)
+
+
+def _shown(moments: Array) -> str:
+    return ", ".join(f"{moment:.3g}" for moment in moments)

@@ -1,0 +1,102 @@
+"""The URDF of a robot's chain as liftopt writes it: plain shapes, bodies and joints, each name with the agent's.
+
+A joint of the chain is ``<agent>_<its own name>``, and q is its own: forward kinematics, mass matrix and gravity are
+those of the URDF that was read. What does not move is one body with what carries it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+import pinocchio as pin
+
+from liftopt.errors import InputError
+from liftopt.multibody.robots.chain import ChainLink, RobotChain
+from liftopt.multibody.robots.sawyer_shapes import tool_shapes
+from liftopt.multibody.robots.tool import tool_body
+from liftopt.multibody.shapes import Capsule, Colour, Shape
+from liftopt.multibody.urdf import FixedLink, JointBounds, MovingLink, tree_robot, urdf_text
+from liftopt.types import Array
+
+GREY = Colour("robot_grey", (0.30, 0.31, 0.33, 1.0))
+# Radius of the capsules along the links: a share of the reach, within what arms have [m].
+RADIUS_SHARE, THINNEST, THICKEST = 0.05, 0.02, 0.06
+UP = np.array([0.0, 0.0, 1.0])
+LONGEST_NAME = 90
+
+
+def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length: float, tool_mass: float) -> str:
+    """Return the URDF of a robot whose base is bolted to the world.
+
+    Args:
+        chain: what moves.
+        name: of the agent, which begins all names; ``<name>_grasp`` is the frame that it holds with.
+        T_world_base: (4, 4) placement of the base link.
+        tool_length: from the grasp frame along its z axis to where it holds [m].
+        tool_mass: of the tool [kg].
+
+    Raises:
+        InputError: two of its names cannot be told apart in a URDF.
+    """
+    joints = _named(name, [joint.name for joint in chain.joints], (), chain)
+    taken = (*joints, f"{name}_grasp", f"{name}_tool", "world")
+    base, *links = _named(name, [chain.base, *(link.joint.child for link in chain.links)], taken, chain)
+    turns = [_turned(link) for link in chain.links]
+    radius = float(np.clip(RADIUS_SHARE * chain.reach, THINNEST, THICKEST))
+    moving, parent, before = [], base, np.eye(4)
+    # What each link carries next, in its frame: the next link, at last the grasp frame.
+    ends = [*(link.placement for link in chain.links[1:]), chain.T_last_grasp]
+    bounded = zip(chain.links, chain.ranges, turns, joints, links, ends, strict=True)
+    for link, ends_of_range, turn, joint, own, end in bounded:
+        back = turn.T
+        bounds = JointBounds(
+            ends_of_range.lower, ends_of_range.upper, float(link.joint.effort or 0.0), float(link.joint.velocity or 0.0)
+        )
+        body = link.body.transformed(back[:3, :3], np.zeros(3))
+        shapes = tuple(_tube(f"{own}_tube", (back @ end)[:3, 3], radius))
+        kind = "prismatic" if link.joint.kind == "prismatic" else "revolute"
+        placement = before @ link.placement @ turn
+        moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, shapes))  # type: ignore[arg-type]
+        parent, before = own, back
+    stand = tuple(_tube(f"{base}_tube", chain.links[0].placement[:3, 3], radius))
+    flange = before @ chain.T_last_grasp
+    fixed = [FixedLink(base, "world", T_world_base, chain.base_body, stand)]
+    if tool_length or tool_mass:
+        fixed.append(
+            FixedLink(f"{name}_tool", parent, flange, tool_body(tool_length, tool_mass), tool_shapes(tool_length))
+        )
+    tip = np.eye(4)
+    tip[2, 3] = tool_length
+    fixed.append(FixedLink(f"{name}_grasp", parent, flange @ tip))
+    return urdf_text(tree_robot(name, moving, fixed))
+
+
+def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotChain) -> list[str]:
+    """Return names as liftopt's URDFs have them; one that is taken, by a joint for instance, says that it is a link."""
+    names: list[str] = []
+    used = set(taken)
+    for one in own:
+        name = f"{agent}_{re.sub(r'[^A-Za-z0-9_.+-]', '_', one)}"[:LONGEST_NAME]
+        name = f"{name}_link" if name in used else name
+        if name in used or f"{name}_fixed" in used:
+            raise InputError(
+                f"{chain.description.source}: name", one, "another link or joint has one that reads the same"
+            )
+        used.add(name)
+        names.append(name)
+    return names
+
+
+def _turned(link: ChainLink) -> Array:
+    """Return T_child_link (4, 4) of the frame whose z axis is the joint's axis: liftopt's joints turn about z."""
+    turn = np.eye(4)
+    turn[:3, :3] = pin.Quaternion.FromTwoVectors(UP, link.joint.axis).matrix()
+    return turn
+
+
+def _tube(name: str, end: Array, radius: float) -> Iterator[Shape]:
+    """Give a capsule from a link's origin to what it carries, if that is apart."""
+    if np.linalg.norm(end) > radius / 2.0:
+        yield Capsule(name, GREY, np.zeros(3), end, radius)
