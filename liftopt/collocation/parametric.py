@@ -31,6 +31,7 @@ from liftopt.collocation.task import OBJECT_COORDINATES
 from liftopt.types import Array
 
 LOOSE = 1e12  # slack over multiplier where there is no multiplier at all
+LEAST_LOOSE = 1e-9  # of all rows where some depend on others
 
 
 @dataclass(frozen=True)
@@ -127,8 +128,11 @@ class Optimum:
         slope = sp.vstack([self._jacobian, sp.identity(n)])
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(self._slack > 0, self._slack / np.abs(self._lam), 0.0)
-        loose = sp.diags(np.minimum(ratio, LOOSE))
-        return splu(sp.csc_matrix(sp.bmat([[hessian, slope.T], [slope, -loose]])))
+        loose = np.minimum(ratio, LOOSE)
+        try:
+            return splu(_kkt_matrix(hessian, slope, loose))
+        except RuntimeError:  # rows that say the same, as the grasps of two hands on one body may
+            return splu(_kkt_matrix(hessian, slope, np.maximum(loose, LEAST_LOOSE)))
 
     def _reach(self, moved: Array, dlam: Array) -> tuple[float, str]:
         """Return the change at which the first limit changes sides, from the rates of values off bounds, and which."""
@@ -154,6 +158,10 @@ class Optimum:
         names = [joint for agent in team.agents for joint in agent.moving_joints]
         names += [f"{team.object.name} {c}" for c in OBJECT_COORDINATES]
         return f"position of {names[column[0]]}" if len(column) else "a component of a grasp force"
+
+
+def _kkt_matrix(hessian: sp.spmatrix, slope: sp.spmatrix, loose: Array) -> sp.csc_matrix:
+    return sp.csc_matrix(sp.bmat([[hessian, slope.T], [slope, -sp.diags(loose)]]))
 
 
 def _matrix(found: Any) -> sp.csc_matrix:

@@ -10,8 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from liftopt.collocation.separating_planes import WORLD
 from liftopt.search.candidate import Candidate
 from liftopt.search.elastic_clearing import cleared_elastically
+from liftopt.search.held_off import held_off
 from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.search.optima import PROMISING, each_once, is_known, objective_of
 from liftopt.search.passing_paths import passing_paths
@@ -21,6 +23,9 @@ from liftopt.search.session import Session
 FAILING = 4
 # Of those that failed, so many are led past what they ran into, or taken to its other sides.
 PASSED = 2
+# Pairs whose other side is tried, each alone: where many overlap, one of them decides little.
+AVOIDED = 6
+HELD_OFF = 2  # clear optima that are wanted where the object is held off: the first may pass on a worse side
 
 
 def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> list[Candidate]:
@@ -51,7 +56,7 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
             failed.append(attempt)
     if not found:
         session.blocked = failed
-        found = _passing(session, clearer, failed[:PASSED]) or _other_sides(clearer, failed[:PASSED])
+        found = _anyhow(session, clearer, failed[:PASSED])
     if not found:
         return []
     return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
@@ -76,9 +81,37 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
             session.blocked = []
             return [*candidates[:n], attempt.candidate, *candidates[n + 1 :]]
         session.blocked.append(attempt)
-    failed = session.blocked[:PASSED]
-    found = _passing(session, clearer, failed) or _other_sides(clearer, failed)
-    return [*found, *candidates]
+    return [*_anyhow(session, clearer, session.blocked[:PASSED]), *candidates]
+
+
+def _anyhow(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima that a detour leads to, from what the overlaps alone did not lead to any."""
+    return (
+        _passing(session, clearer, failed)
+        or [clear for first in failed for clear in _out_of_the_lap(clearer, first)]
+        or _other_sides(clearer, failed)
+    )
+
+
+def _out_of_the_lap(clearer: Clearer, failed: Attempt) -> list[Candidate]:
+    """Return clear optima with the object held off from whoever holds it; none if it was clear of them."""
+    solids, own = clearer.solids, len(clearer.solids.team.agents)
+    parts = [[solids.bodies[s].part for s in solids.ends[pair]] for pair in failed.deep]
+    if not any(own in ends and WORLD not in ends for ends in parts):
+        return []
+    found: list[Candidate] = []
+    for start in sorted(held_off(clearer, failed.origin), key=lambda start: -_least(clearer, start)):
+        attempt = clearer.make_clear(start, also=failed.deep)
+        found += [attempt.candidate] if attempt.clear else []
+        if len(found) == HELD_OFF or clearer.deadline.passed:
+            break
+    return found
+
+
+def _least(clearer: Clearer, candidate: Candidate) -> float:
+    """Return by how much the deepest overlap of a motion is from being clear [m]; negative where it is not."""
+    _, least = clearer.look(candidate.problem, candidate.spline, candidate.result.x)
+    return float((least - clearer.asked).min())
 
 
 def _passing(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
@@ -108,7 +141,8 @@ def _other_sides(clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]
     for first in failed:
         if clearer.deadline.passed:
             break
-        for avoided in dict.fromkeys((first.deep, *(frozenset({pair}) for pair in sorted(first.deep)))):
+        pairs = [frozenset({pair}) for pair in sorted(first.deep)]
+        for avoided in dict.fromkeys((first.deep, *pairs[:AVOIDED])):
             attempt = clearer.make_clear(first.origin, polish=False, avoided=avoided)
             if attempt.clear:
                 found.append(attempt.candidate)

@@ -45,7 +45,9 @@ def estimate(cache: SolverCache, candidate: Candidate, deadline: Deadline, progr
     for intervals in (2 * n, n // 2):
         if FEWEST <= intervals <= FINEST and not deadline.passed:
             progress(f"estimating the error of the objective on {intervals} intervals")
-            other = optimum_on_mesh(cache, candidate, intervals, FASTEST_FIRST, deadline, progress)
+            # IPOPT seldom mends what planes on another mesh ask for, and takes long.
+            solvers = FASTEST_FIRST if candidate.problem.planes is None else FASTEST_FIRST[:1]
+            other = optimum_on_mesh(cache, candidate, intervals, solvers, deadline, progress)
             known = compared(candidate, other) if other is not None else known
             if known.estimated:
                 break

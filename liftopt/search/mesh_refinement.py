@@ -15,8 +15,10 @@ from liftopt.collocation.spline import FINEST, RestToRestSpline
 from liftopt.collocation.transfer import transfer
 from liftopt.search.cache import IPOPT
 from liftopt.search.candidate import Candidate
+from liftopt.search.elastic_clearing import cleared_elastically
 from liftopt.search.found import Found
 from liftopt.search.initial_guess import InitialGuess
+from liftopt.search.make_clear import pairs_in
 from liftopt.search.mesh_accuracy import TELLING, compared, estimate, unmet
 from liftopt.search.optima import PROMISING, each_once, indistinguishable, is_known, objective_of
 from liftopt.search.optimum_on_mesh import optimum_on_mesh
@@ -107,10 +109,13 @@ def continue_on_mesh(
         if found:
             best = min(found, key=objective_of).result
             incumbent = replace(best, objective=margin * best.objective)
+        apart = candidate.problem.planes is not None
         there = optimum_on_mesh(
-            session.cache, candidate, intervals, solvers, session.deadline, session.progress, incumbent,
-            session.record, without_multipliers,
+            session.cache, candidate, intervals, solvers[:1] if apart else solvers, session.deadline,
+            session.progress, incumbent, session.record, without_multipliers,
         )  # fmt: skip
+        if there is None and apart and incumbent is None:
+            there = elastic_on_mesh(session, candidate, intervals)
         if there is not None and not (without_multipliers and is_known(there.result.objective, found)):
             found.extend(made_clear(session, there))
 
@@ -122,6 +127,23 @@ def continue_on_mesh(
         session.progress(f"solving on {intervals} intervals from the motion alone: {origin.start}")
         solve(origin, without_multipliers=True)
     return each_once(found)
+
+
+def elastic_on_mesh(session: Session, candidate: Candidate, intervals: int) -> Candidate | None:
+    """Return the clear optimum on so many intervals that the elastic mode leads to from a clear candidate, or None."""
+    spline = candidate.spline.on(intervals)
+    problem = session.problem(spline)
+    clearer = session.clearer(problem)
+    if clearer is None or session.deadline.passed:
+        return None
+    x = transfer(candidate.problem, candidate.spline, candidate.result.x, problem, spline)
+    start = Candidate(session.scenario, problem, spline, candidate.start, replace(candidate.result, x=x))
+    watched = frozenset(pairs_in(clearer.solids, candidate.problem.planes).tolist())
+    attempt = cleared_elastically(clearer, start, watched)
+    if attempt is None or not attempt.clear:
+        return None
+    session.record(f"{candidate.start}{KEPT_CLEAR}", attempt.candidate.result)
+    return replace(attempt.candidate, origin=candidate)
 
 
 def made_clear(session: Session, candidate: Candidate) -> list[Candidate]:

@@ -49,21 +49,46 @@ def person_comparisons(
     if other := next((record for record in records if record.body != body), None):
         raise InputError("--mocap", other.source, f"is of body {other.body!r}, but {records[0].source} of {body!r}")
     yield from _joints(dense, human, records, notes)
+    sides = _sides(human)
+    hold, load = human.p_world_hold, human.load
+    if body == "arm" and "right" in sides[:1]:  # a record of trunk and right arm has no other hand
+        hold, load, sides = human.grasp_position[:, 0], human.grasp_force[:, 0], sides[:1]
     for axis, name, label in PATHS:
-        paths = [record.over_lift(record.hand_position[:, axis], SAMPLES) for record in records]
-        predicted = human.p_world_hold[:, axis] - human.p_world_hold[0, axis]
-        label = f"{'Hand' if body == 'arm' else 'Middle of the hands'}, {label}"
+        paths = [record.over_lift(_hold(record, sides)[:, axis], SAMPLES) for record in records]
+        predicted = hold[:, axis] - hold[0, axis]
+        label = f"{'Hand' if len(sides) == 1 else 'Middle of the hands'}, {label}"
         yield compared("hand_path", name, label, "m", dense, predicted, [path - path[0] for path in paths])
     loaded = [record for record in records if not record.force_from.startswith(NO_FORCE)]
     if loaded:
-        vertical = [record.over_lift(record.hand_force[:, 2], SAMPLES) for record in loaded]
+        vertical = [record.over_lift(_load(record, sides)[:, 2], SAMPLES) for record in loaded]
         label = "Vertical force (mocap)"
-        yield compared("hand_force", "mocap", label, "N", dense, human.load[:, 2], vertical)
+        yield compared("hand_force", "mocap", label, "N", dense, load[:, 2], vertical)
     wholes = [(record, record.whole) for record in records if record.whole is not None]
     if wholes:
-        yield from _hands(dense, human, wholes)
+        yield from _hands(dense, human, sides, wholes)
         yield from _ground(dense, human, wholes, notes)
     notes += [text for record in records for text in _about(dense, human, record)]
+
+
+def _sides(human: AgentTrajectory) -> tuple[str, ...]:
+    """Return the sides of the hands that hold in the prediction; of trunk and right arm the right one."""
+    if human.stance is None:
+        return ("right",)
+    return tuple(grasp.frame.removeprefix(f"{human.name}_").removesuffix("_grasp") for grasp in human.grasps)
+
+
+def _hold(record: RecordedLift, sides: Sequence[str]) -> Array:
+    """Return (K, 3) the middle of the recorded hands of these sides [m]."""
+    if record.whole is None:
+        return record.hand_position
+    return np.asarray(record.whole.grasp_position[:, [HANDS.index(side) for side in sides]].mean(axis=1))
+
+
+def _load(record: RecordedLift, sides: Sequence[str]) -> Array:
+    """Return (K, 3) the force of the recorded hands of these sides together [N]."""
+    if record.whole is None:
+        return record.hand_force
+    return np.asarray(record.whole.grasp_force[:, [HANDS.index(side) for side in sides]].sum(axis=1))
 
 
 def _joints(
@@ -106,7 +131,8 @@ def _tell_by_height(
         notes: that it is added to.
     """
     above = human.p_world_hold[:, 2]
-    recorded = [record.over_lift(record.hand_position[:, 2], SAMPLES) for record in records]
+    sides = _sides(human)
+    recorded = [record.over_lift(_hold(record, sides)[:, 2], SAMPLES) for record in records]
     low, high = max(above.min(), *map(np.min, recorded)), min(above.max(), *map(np.max, recorded))
     if high - low < LEAST_RISE:
         notes.append("prediction and records have no heights of the hand in common: no comparison by height")
@@ -137,13 +163,13 @@ def _recorded_name(joint: str, recorded: set[str], *, same_body: bool) -> str | 
 
 
 def _hands(
-    dense: Solution, human: AgentTrajectory, wholes: Sequence[tuple[RecordedLift, RecordedWhole]]
+    dense: Solution,
+    human: AgentTrajectory,
+    sides: Sequence[str],
+    wholes: Sequence[tuple[RecordedLift, RecordedWhole]],
 ) -> Iterator[Comparison]:
-    """Give path and force of each hand that holds in the prediction."""
-    for column, grasp in enumerate(human.grasps):
-        side = grasp.name.rpartition("_")[2]
-        if side not in HANDS:
-            continue
+    """Give path and force of each hand where several hold in the prediction."""
+    for column, side in enumerate(sides if len(sides) > 1 else ()):
         row = HANDS.index(side)
         for axis, name, label in PATHS:
             paths = [record.over_lift(whole.grasp_position[:, row, axis], SAMPLES) for record, whole in wholes]

@@ -1,8 +1,8 @@
 """A recorded lift of a whole person as a scenario: the same person alone, both hands where they held, box and time.
 
 The object keeps its place over the feet at the start and at the end of the time in which it is carried. Its box is as
-large as the hands are apart; each hand holds where it held, as seen in the object's axes, and in the way whose
-reference orientation is nearest to the recorded hand. The hands of a person bear all of it: there is no robot.
+large as the hands are apart; each hand that bore some of it holds where it held, as seen in the object's axes, and in
+the way whose reference orientation is nearest to the recorded hand. The person bears all of it: there is no robot.
 
 Left out are that feet, legs and trunk are not those of the recording, what stands in the way, and that the recorded
 arm may start in motion. Markers show neither the object's sides nor its centre of mass: these are in the middle of its
@@ -27,6 +27,7 @@ from liftopt.types import Array
 
 HEIGHT = 0.25  # m of the box: markers do not show it
 LEAST = 0.2  # m of its depth and width
+IDLE = 0.02  # of the other hand's force; one that bears no more does not hold
 DISTANCE = 1.9  # m to a robot that is not there, which a scenario states all the same
 
 
@@ -51,13 +52,16 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
     held = np.einsum("kji,kgj->kgi", turn, away).mean(axis=0)
     hands = np.einsum("kji,kgjl->kgil", turn, _hands(lift)[carried])
     start, end = lift.over_lift(lift.object_position, 2)
-    depth, width = (2.0 * float(np.abs(held[:, axis]).max()) for axis in (0, 1))
-    height = max(HEIGHT, 2.0 * float(np.abs(held[:, 2]).max()))
     person = lift.subject
+    holding = _holding(whole.grasp_force[carried])
     grasps = {
-        f"human_{hand}": {"place": _hold(hands[:, i], hand), "position": [_round(x) for x in held[i]]}
-        for i, hand in enumerate(BOTH)
+        (f"human_{hand}" if len(holding) > 1 else "human"): {
+            "place": _hold(hands[:, i], hand),
+            "position": [_round(x) for x in held[i]],
+        }
+        for i, hand in holding.items()
     }
+    depth, width, height = 2.0 * np.abs(held[list(holding)]).max(axis=0)
     tables: dict[str, Any] = {
         "schema": 2,
         "name": name,
@@ -69,7 +73,7 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
                 "mass": person.mass,
                 "sex": person.sex,
                 "body": "whole",
-                "hands": list(HANDS),
+                "hands": list(holding.values()),
             }
         },
         "object": {
@@ -77,7 +81,7 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
             "mass": mass,
             "depth": max(_round(depth), LEAST),
             "width": max(_round(width), LEAST),
-            "height": _round(height),
+            "height": max(_round(height), HEIGHT),
             "grasps": grasps,
         },
         "task": {
@@ -87,6 +91,12 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
         },
     }
     return scenario_from_dict(tables)
+
+
+def _holding(force: Array) -> dict[int, Hand]:
+    """Return the hands that bear something (K, 2, 3) by their number; both where no force is known."""
+    peak = np.linalg.norm(force, axis=2).max(axis=0)
+    return {i: hand for i, hand in enumerate(BOTH) if peak[i] > IDLE * peak.max() or not peak.any()}
 
 
 def _hands(lift: RecordedLift) -> Array:

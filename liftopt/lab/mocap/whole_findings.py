@@ -32,7 +32,7 @@ def whole_findings(
         notes.append(f"{len(taken.unused)} markers are not mapped and not used: {', '.join(taken.unused[:20])}")
     if taken.recording.analog is not None:
         notes.append(f"{len(taken.recording.analog.labels)} analog channels are not converted to forces")
-    notes += [*_legs(found, person), *_centres(found, mapping), *_trunk(found, person)]
+    notes += [*_legs(found, person), *_centres(found, mapping), *_trunk(found, person), *_shoulders(found)]
     if scaled.estimated:
         each = ", ".join(f"{name} {value:.2f}" for name, value in scaled.stature_by.items())
         notes.append(f"the stature is estimated from segments ({each} m)")
@@ -71,6 +71,11 @@ def _legs(found: WholeSkeleton, person: WholePerson) -> Iterator[str]:
     away = ", ".join(f"{side} {1000 * np.nanmax(foot_travel(found.centres, side)):.0f} mm" for side in SIDES)
     rise = ", ".join(f"{side} {1000 * _rise(found.centres.joint[side, 'ankle'][:, 2]):.0f} mm" for side in SIDES)
     yield f"the feet are taken to stand: ankles move along the floor by up to {away} and rise by up to {rise}"
+    floor = 1000.0 * person.world.translation[2]
+    yield (
+        f"the floor is {abs(floor):.0f} mm {'below' if floor > 0.0 else 'above'} the recording's zero of height: as "
+        "far below the ankles as the stature implies"
+    )
     sway = 1000.0 * person.sway
     yield (
         f"the hips sway sideways from {sway.min():+.0f} to {sway.max():+.0f} mm from over the ankles (left is "
@@ -109,6 +114,16 @@ def _trunk(found: WholeSkeleton, person: WholePerson) -> Iterator[str]:
         f"the pelvis turns by {turned:.1f} deg in heading and {rolled:.1f} in roll, which the model's legs cannot: its "
         "trunk takes them"
     )
+
+
+def _shoulders(found: WholeSkeleton) -> Iterator[str]:
+    for side in SIDES:
+        place = found.axes["trunk"].seen(found.centres.joint[side, "shoulder"])
+        travel = 1000.0 * (np.nanmax(place, axis=0) - np.nanmin(place, axis=0))
+        yield (
+            f"the {side} shoulder's centre travels {travel[0]:.0f}, {travel[1]:.0f}, {travel[2]:.0f} mm in the trunk "
+            "(forward, sideways, up); the model has no clavicle and keeps it at its mean"
+        )
 
 
 def _off(what: str, off: Array, of: str = "that") -> str:

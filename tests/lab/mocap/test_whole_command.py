@@ -11,6 +11,10 @@ import tomli_w
 import xarray
 
 from liftopt.commands.cli import main
+from liftopt.lab.mocap.from_markers import recorded_lift
+from liftopt.lab.mocap.loads import Load
+from liftopt.lab.mocap.recorded_scenario import recorded_scenario
+from liftopt.lab.mocap.whole_map import WholeMap
 from liftopt.scenario.model import load_scenario
 from tests.lab.marker_files import write_c3d, write_trc
 from tests.lab.whole_markers import MAPPING, WholeTruth, whole_truth
@@ -110,3 +114,10 @@ def test_the_scenario_has_the_whole_person_alone_with_hands_where_they_held(
         held = scenario.object.grasps[f"human_{side}"]
         away = (truth.points[f"{mark}Grasp"] - centre)[lifted].mean(axis=0)
         np.testing.assert_allclose(held.position, away, atol=0.005)
+
+
+def test_a_hand_that_bears_nothing_does_not_hold(truth: WholeTruth) -> None:
+    lift = recorded_lift(truth.recording, WholeMap.checked(MAPPING), Load(mass=6.0, share=0.0), 20.0)
+    scenario = recorded_scenario(lift, 6.0)
+    assert scenario.first("person").hands == ("left",)
+    assert list(scenario.object.grasps) == ["human"]
