@@ -36,12 +36,18 @@ def _balance(fine: Solution, agent: Agent, person: AgentTrajectory, who: Who) ->
     k = int(np.argmin(margin))
     least, time = max(float(margin[k]), -1.0), float(fine.time[k])
     edge = SIDES[_nearest(agent, pressure_in_base(agent, person)[k])]
+    if least < 0.0:  # between knots, where no row holds it
+        title = f"stands {-1000 * least:.0f} mm beyond the {edge} between knots"
+        where = f"passes the {edge} by {-1000 * least:.0f} mm"
+    else:
+        title = f"stands {1000 * least:.0f} mm within the soles at least"
+        where = f"comes within {1000 * least:.0f} mm of the {edge}"
     return Finding(
         f"{PERSON}.balance",
         CAUTION if least < NEAR_EDGE else INFO,
-        f"stands {100 * least:.1f} cm within the soles at least",
-        f"The centre of pressure under the feet{who.of} comes within {100 * least:.1f} cm of the {edge} at "
-        f"{time:.2f} s; beyond it the feet would leave the floor.",
+        title,
+        f"The centre of pressure under the feet{who.of} {where} at {time:.2f} s; beyond it the feet would leave the "
+        "floor.",
         who.name, None, time, least, 0.0, "m", FRONT_SOURCE.told,
     )  # fmt: skip
 

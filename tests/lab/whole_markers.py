@@ -95,10 +95,32 @@ def whole_truth(kind: str) -> WholeTruth:
     right = replace(links, l1=base, l2=0.30, l3=0.17, l4=0.28, l5=0.25, l6=0.07)
     lengths = WholeLengths(right, replace(right, l4=0.27, l5=0.245, l6=0.072), own.ankle, hip - 0.41, hip, 0.02)
     urdf = whole_human_urdf(SUBJECT, measured=lengths)
-    model = load_model(urdf)
-    names = list(model.names)[1:]
-    q = _motion(kind, names)
-    places = _at_zero(lengths)
+    q = _motion(kind, list(load_model(urdf).names)[1:])
+    seen = points_on(lengths, urdf, q)
+    middle = (seen["RGrasp"] + seen["LGrasp"]) / 2.0
+    lifted = np.arange(FRAMES) >= FRAMES // 2
+    box = np.where(lifted[:, None], middle, middle[FRAMES // 2])
+    box = box + np.array([0.15, 0.0, 0.0])
+    return _with_recording(q, lengths, urdf, box, seen)
+
+
+def recorded_truth(lengths: WholeLengths, urdf: str, q: Array, box: Array, turn: Array) -> WholeTruth:
+    """Return what a laboratory would have recorded at ``RATE`` of any motion of a person and a box.
+
+    Args:
+        lengths: of the person.
+        urdf: of the person, who stands at the origin and faces X.
+        q: (F, 20).
+        box: (F, 3) its centre in the world [m].
+        turn: (F, 3, 3) its axes in the world.
+    """
+    seen = points_on(lengths, urdf, q)
+    return _with_recording(q, lengths, urdf, box, seen, turn)
+
+
+def points_on(lengths: WholeLengths, urdf: str, q: Array) -> dict[str, Array]:
+    """Return by label where markers, in capitals, and joint centres are (F, 3) in the world [m]."""
+    model, places = load_model(urdf), _at_zero(lengths)
     zero, data = model.createData(), model.createData()
     pin.forwardKinematics(model, zero, np.zeros(model.nq))
     joints = {name: model.getJointId(f"human_{name}") for name in places if name != "feet"}
@@ -109,17 +131,19 @@ def whole_truth(kind: str) -> WholeTruth:
             for label, at in group.items():
                 joint = joints.get(name, 0)
                 points[label].append(data.oMi[joint].act(zero.oMi[joint].actInv(at)))
-    seen = {label: np.array(path) for label, path in points.items()}
-    middle = (seen["RGrasp"] + seen["LGrasp"]) / 2.0
-    lifted = np.arange(FRAMES) >= FRAMES // 2
-    box = np.where(lifted[:, None], middle, middle[FRAMES // 2])
-    box = box + np.array([0.15, 0.0, 0.0])
-    seen |= {f"B{i + 1}": box + at for i, at in enumerate(BOX)}
+    return {label: np.array(path) for label, path in points.items()}
+
+
+def _with_recording(
+    q: Array, lengths: WholeLengths, urdf: str, box: Array, seen: dict[str, Array], axes: Array | None = None
+) -> WholeTruth:
+    turns = np.broadcast_to(np.eye(3), (len(q), 3, 3)) if axes is None else axes
+    marked = [label for label in seen if label.isupper()]
+    seen = seen | {f"B{i + 1}": box + turns @ at for i, at in enumerate(BOX)}
     c, s = np.cos(HEADING), np.sin(HEADING)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    blank = Recording("synthetic", RATE, np.arange(FRAMES) / RATE, (), np.zeros((FRAMES, 0, 3)), "mm", "Z")
+    blank = Recording("synthetic", RATE, np.arange(len(q)) / RATE, (), np.zeros((len(q), 0, 3)), "mm", "Z")
     truth = WholeTruth(blank, q, lengths, urdf, box, turn, seen)
-    marked = [label for group in places.values() for label in group if label.isupper()]
     return replace(truth, recording=truth.with_labels(*marked))
 
 
