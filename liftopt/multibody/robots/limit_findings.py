@@ -34,17 +34,16 @@ def limit_findings(chain: RobotChain) -> Iterator[DataFinding]:
     if len(turning) >= ENOUGH and len(efforts) == 1 and (effort := turning[0].effort):
         message = f"the same on all {len(turning)} joints, it looks like a placeholder"
         yield DataFinding("effort.same", "warned", "effort", effort, message, _give("JOINT", "effort"))
-    for joint in turning:
-        if joint.effort is not None and isfinite(joint.effort) and joint.effort >= LARGEST_EFFORT:
-            message = f"{LARGEST_EFFORT:g} Nm or more: it looks like a placeholder"
-            yield DataFinding("effort.large", "warned", f"joint {joint.name}: effort", joint.effort, message,
-                              _give(joint.name, "effort"))  # fmt: skip
-    fast = [joint for joint in turning if joint.velocity is not None and joint.velocity >= LARGEST_VELOCITY]
-    if fast:
-        names = ", ".join(joint.name for joint in fast)
-        message = f"no arm turns as fast: {names}"
-        yield DataFinding("velocity.large", "warned", "velocity", fast[0].velocity, message,
-                          _give("JOINT", "velocity"))  # fmt: skip
+    yield from _large("effort", turning, LARGEST_EFFORT, "the arms that work beside people have less")
+    yield from _large("velocity", turning, LARGEST_VELOCITY, "no arm turns as fast")
+
+
+def _large(name: str, joints: list[RobotJoint], from_here: float, message: str) -> Iterator[DataFinding]:
+    """Give the joints whose limit is so large that it looks like a placeholder, all in one finding."""
+    large = {joint.name: float(value) for joint in joints if (value := getattr(joint, name)) and value >= from_here}
+    if large and all(isfinite(value) for value in large.values()):
+        told = f"{message}, it looks like a placeholder: {', '.join(large)}"
+        yield DataFinding(f"{name}.large", "warned", name, max(large.values()), told, _give("JOINT", name))
 
 
 def _range(joint: RobotJoint, ends: JointRange) -> Iterator[DataFinding]:

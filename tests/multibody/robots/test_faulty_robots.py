@@ -28,7 +28,7 @@ FAULTS = {
     "no effort": ([('effort="98"', "")], "effort.missing", "refused", "joint j2: effort"),
     "effort zero": ([('effort="98"', 'effort="0"')], "effort.value", "refused", "joint j2: effort"),
     "one effort for all": (SAME, "effort.same", "warned", "effort"),
-    "effort of a placeholder": ([('effort="98"', 'effort="1000"')], "effort.large", "warned", "joint j2: effort"),
+    "effort of a placeholder": ([('effort="98"', 'effort="1000"')], "effort.large", "warned", "effort"),
     "velocity zero": ([('velocity="2"', 'velocity="0"')], "velocity.value", "refused", "joint j1: velocity"),
     "velocity of a placeholder": ([('velocity="2"', 'velocity="100"')], "velocity.large", "warned", "velocity"),
     "no range": ([('lower="-2.5" upper="2.2"', "")], "range.missing", "refused", "joint j2: range"),
