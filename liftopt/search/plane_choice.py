@@ -39,6 +39,8 @@ FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
 # The object may rest on what stands at an end, this deep [m], and leaves it with this acceleration at least [m/s^2].
 TOUCHING, LEAVING = 1e-3, 0.2
+# There the task holds it, and a row that just touches would leave the solver no interior: it is this far off [m].
+AT_REST = 1e-4
 # Rows of two bodies are made this many at a time, so that the next planes seldom need another structure.
 ROOM = 4
 
@@ -234,6 +236,7 @@ def _wanted(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOpt
             rest = found.distance[end, p]
             if rest >= options.distance - options.margin - TOUCHING:
                 wanted = np.minimum(wanted, rest + LEAVING / 2 * passed**2)
+                wanted[end] -= AT_REST
     return wanted
 
 

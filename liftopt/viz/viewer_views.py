@@ -140,7 +140,8 @@ def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
             for y in (-aside, aside):
                 points += [(world_base @ (x, y, 0.0, 1.0))[:3] * (1.0, 1.0, 0.0) + cast.offset]
                 points += [points[-1] + (0.0, 0.0, top)]
-        points += [row for grasp in agent.grasps for row in playback.forces[grasp.name].point + cast.offset]
+        (own,) = (one for one in cast.solution.agents if one.name == agent.name)  # it may hold otherwise in this lift
+        points += [row for grasp in own.grasps for row in playback.forces[grasp.name].point + cast.offset]
         points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
     room = 0.0 if agent.kind == "person" else ROBOT
     return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
