@@ -62,11 +62,18 @@ def test_a_faulty_file_ends_with_3_and_the_fix(urdf: Path, capsys: pytest.Captur
     urdf.write_text(urdf.read_text().replace('effort="58"', 'effort="0"'))
     assert main(["robots", str(urdf)]) == 3
     out = capsys.readouterr().out
-    assert "Refused: joint j2: effort = 0.0: must be positive; give limits.j2.effort" in out
+    assert "Refused: joint j2: effort = 0.0: must be positive, and at most 1e+06; give limits.j2.effort" in out
     assert out.endswith("It cannot lift with these data.\n")
     assert main(["robots", str(urdf), "--json"]) == 3
     told = _json(capsys)
     assert (told["usable"], told["exit_status"], told["findings"][0]["severity"]) == (False, 3, "refused")
+
+
+def test_one_line_tells_what_several_joints_lack(urdf: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    urdf.write_text(re.sub(r'effort="5\d"', 'effort="0"', urdf.read_text()))
+    assert main(["robots", str(urdf)]) == 3
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("Refused")]
+    assert len(lines) == 1 and lines[0].endswith("(and joint j2: effort, joint j3: effort)")
 
 
 def test_options_choose_base_frame_and_locked_joints(urdf: Path, capsys: pytest.CaptureFixture[str]) -> None:

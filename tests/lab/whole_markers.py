@@ -27,8 +27,10 @@ SIDES = (("right", "R", -1.0), ("left", "L", 1.0))
 # In degrees: legs ankle, knee, hip; trunk Q2; of both arms Q4, Q5, Q6, Q7, Q8, Q9, Q10.
 LOW = {
     "squat": (30.0, 105.0, 85.0, 25.0, (-15.0, 60.0, 12.0, -40.0, -70.0, -8.0, 6.0)),
+    "straight": (-8.0, 12.0, 60.0, 35.0, (-5.0, 80.0, 2.0, -4.0, -60.0, -6.0, 2.0)),
     "stoop": (-8.0, 12.0, 70.0, 45.0, (-12.0, 105.0, 10.0, -25.0, -60.0, -10.0, 5.0)),
 }
+STRAIGHT = (-5.0, 5.0, 2.0, -4.0, -60.0, -5.0, 2.0)
 HIGH = (-10.0, 20.0, 8.0, -75.0, -60.0, -5.0, 4.0)
 BOX = np.array([[0.15, 0.2, 0.1], [0.15, -0.2, 0.1], [-0.15, 0.2, 0.15], [-0.15, -0.2, 0.05]])
 MAPPING: dict[str, Any] = {
@@ -88,7 +90,10 @@ class WholeTruth:
 
 
 def whole_truth(kind: str) -> WholeTruth:
-    """Return a ``"squat"`` or ``"stoop"`` lift with both hands: upright, down to the box, up with it."""
+    """Return a ``"squat"`` or ``"stoop"`` lift with both hands, or a stoop with ``"straight"`` arms.
+
+    The person is upright, down to the box, up with it.
+    """
     own, links = WholeLengths.of(SUBJECT), link_lengths(SUBJECT)
     hip = landmarks(SUBJECT).ankle + 0.40 + 0.41
     base = hip + SEGMENTS["female"]["lower_trunk"].length * SUBJECT.stature
@@ -154,7 +159,8 @@ def _motion(kind: str, names: list[str]) -> Array:
     high = {}
     for side in ("right", "left"):
         for k in range(7):
-            low[f"human_{side}_Q{k + 4}"], high[f"human_{side}_Q{k + 4}"] = arm[k], HIGH[k]
+            above = STRAIGHT if kind == "straight" else HIGH
+            low[f"human_{side}_Q{k + 4}"], high[f"human_{side}_Q{k + 4}"] = arm[k], above[k]
     low |= {"human_Q3": 4.0, "human_right_Q5": low["human_right_Q5"] + 4.0, "human_left_Q7": arm[3] - 6.0}
     time = np.arange(FRAMES) / (FRAMES - 1.0)
     down = np.clip((time - 0.13) / 0.34, 0.0, 1.0)

@@ -14,6 +14,7 @@ from liftopt.multibody.robots.joint_ranges import JointRange
 ENOUGH = 3  # joints from which one value for all of them looks like a placeholder
 LARGEST_EFFORT = 1000.0  # of a joint that turns [Nm]: the largest arms that work beside people have 450
 LARGEST_VELOCITY = 20.0  # [rad/s]: fast arms have 4 to 6
+LARGEST_NUMBER = 1e6  # of any limit: no joint has as much, and readers of results take no more
 WIDEST = 8.0 * 3.141592653589793  # [rad]: four turns
 
 
@@ -51,8 +52,8 @@ def _range(joint: RobotJoint, ends: JointRange) -> Iterator[DataFinding]:
     shown = f"{ends.lower:.4g} to {ends.upper:.4g}"
     if ends.source == "nothing":
         yield DataFinding("range.missing", "refused", where, NO_VALUE, f"a {joint.kind} joint needs one", fix)
-    elif not (isfinite(ends.lower) and isfinite(ends.upper)):
-        yield DataFinding("range.value", "refused", where, shown, "must be numbers", fix)
+    elif not (abs(ends.lower) <= LARGEST_NUMBER and abs(ends.upper) <= LARGEST_NUMBER):  # NaN is not, either
+        yield DataFinding("range.value", "refused", where, shown, f"must be within {LARGEST_NUMBER:g}", fix)
     elif ends.lower > ends.upper:
         yield DataFinding("range.inverted", "refused", where, shown, "its lower end is above its upper end", fix)
     elif ends.lower == ends.upper:
@@ -75,8 +76,9 @@ def _largest(joint: RobotJoint, name: str, value: float | None) -> Iterator[Data
     where = f"joint {joint.name}: {name}"
     if value is None:
         yield DataFinding(f"{name}.missing", "refused", where, NO_VALUE, "the URDF has none", _give(joint.name, name))
-    elif not isfinite(value) or value <= 0.0:
-        yield DataFinding(f"{name}.value", "refused", where, value, "must be positive", _give(joint.name, name))
+    elif not 0.0 < value <= LARGEST_NUMBER:
+        message = f"must be positive, and at most {LARGEST_NUMBER:g}"
+        yield DataFinding(f"{name}.value", "refused", where, value, message, _give(joint.name, name))
 
 
 def _give(joint: str, name: str) -> str:

@@ -23,6 +23,11 @@ from liftopt.types import Array
 
 TEXT = "URDF"  # what messages call a text that is no file
 MOMENTS = ("ixx", "iyy", "izz")  # the products of inertia may be left out, these may not
+NEEDED = {
+    "link": ("inertial",),
+    "inertial": ("origin", "mass", "inertia"),
+    "joint": ("origin", "parent", "child", "axis", "limit", "mimic", "safety_controller"),
+}
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -69,18 +74,23 @@ def _described(text: str, source: str, path: Path | None) -> RobotDescription:
 
 
 def _parsed(tree: Element, source: str) -> Any:
-    """Return yourdfpy's robot; elements that it would stumble over and that no dynamics need are left out."""
+    """Return yourdfpy's robot, of the elements that dynamics need and no others, over which it might stumble."""
     try:
         import yourdfpy
     except ImportError:
         raise InputError(source, NO_VALUE, f"the package yourdfpy reads URDFs: {INSTALL}") from None
     bare = Element("robot", name=tree.get("name") or "robot")
     for element in (*tree.findall("link"), *tree.findall("joint")):
-        copy = Element(element.tag, element.attrib)
-        copy.extend([inner for inner in element if inner.tag not in ("visual", "collision", "calibration")])
-        bare.append(copy)
+        bare.append(_needed(element))
     content = BytesIO(ElementTree.tostring(bare))
     return yourdfpy.URDF.load(content, build_scene_graph=False, load_meshes=False).robot
+
+
+def _needed(element: Element) -> Element:
+    """Return an element without what it holds that is not in ``NEEDED``."""
+    copy = Element(element.tag, element.attrib)
+    copy.extend([_needed(inner) for inner in element if inner.tag in NEEDED.get(element.tag, ())])
+    return copy
 
 
 def _link(link: Any, element: Element, path: Path | None) -> RobotLink:

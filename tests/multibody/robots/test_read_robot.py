@@ -37,6 +37,7 @@ def test_links_and_joints_are_those_of_the_text(arm):
         (('mass value="3.0"', 'mass value="3,0"'), r"link l2: mass value = '3,0': must be a number"),
         (('axis xyz="1 0 0"', 'axis xyz="0 0 0"'), r"axis = \[0.0, 0.0, 0.0\]: must be a direction"),
         (('xyz="0 0 0.3"', 'xyz="0 0.3"'), "must be 3 numbers"),
+        (('xyz="0 0 0.3"', 'xyz="0 0 nan"'), "joint j1: origin xyz = '0 0 nan': must be 3 numbers"),
         (('<parent link="l3"/>', '<parent link="l9"/>'), "joint j4: parent = 'l9'"),
         (('<parent link="base"/>', '<parent link="l3"/>'), "in a loop"),
         (('joint name="j2"', 'joint name="j1"'), "2 of its joints have this name"),
@@ -48,6 +49,15 @@ def test_links_and_joints_are_those_of_the_text(arm):
 def test_what_is_no_urdf_is_told_with_its_place(arm, fault, told):
     with pytest.raises(InputError, match=told):
         read_robot(arm(fault))
+
+
+def test_what_nobody_needs_is_left_aside(arm):
+    """Deep nesting ends many a reader, and sensors and plugins may hold anything."""
+    deep = "<a>" * 2000 + "</a>" * 2000
+    text = arm(('<link name="base"/>', f'<link name="base"><visual>{deep}</visual></link><gazebo>{deep}</gazebo>'))
+    assert len(read_robot(text).links) == 7
+    other = read_robot("<?xml version='1.0' encoding='latin-1'?>" + text.replace('name="arm"', 'name="Rüssel"'))
+    assert other.name == "Rüssel"
 
 
 def test_a_name_that_is_none_offers_the_nearest(arm):
