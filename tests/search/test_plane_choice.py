@@ -130,3 +130,23 @@ def test_without_clearance_there_are_no_planes() -> None:
     session = Session(scenario, SolverCache())
     problem = session.problem(session.spline)
     assert session.clearer(problem) is None and problem.planes is None and not problem.poses
+
+
+def test_what_rests_where_the_task_has_it_is_inside_its_row(problem: Problem) -> None:
+    """The object rises from a block that it rests on: an interior point needs room there too, and less than 1 mm."""
+    (ahead, _, low), (_, _, high) = problem.task.start[:3], problem.task.end[:3]
+    control = np.tile(
+        np.concatenate([*(agent.posture for agent in problem.team.agents), [ahead, 0.0, low, 0.0, 0.0, 0.0]]),
+        (problem.layout.control.shape[0], 1),
+    )
+    control[:, -4] = low + (high - low) * np.linspace(0.0, 1.0, len(control)) ** 2
+    top = low - BOX["object.height"] / 2
+    block = placed_box("block", (0.3, 0.3, top), (ahead, 0.0, top / 2), 0.0)
+    solids = TeamSolids.of(problem.team, (block,))
+    x = problem.pack(control, np.zeros(problem.layout.force.shape))
+    pairs = np.array([p for p, pair in enumerate(solids.pairs) if pair.told == "table and block"])
+    planes = planes_along(solids, problem, x, pairs, 0.0)
+    apart = problem.apart(planes)
+    first = next(rows.rows.start for rows in apart.constraints.blocks if rows.name == "clearance")
+    slack = (apart.nlp.jac_g(x, apart.parameters)[0].full().ravel() - apart.constraints.lower)[first:]
+    assert 0.0 < slack.min() < 1e-3
