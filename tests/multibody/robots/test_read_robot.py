@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 from random import Random
 
@@ -111,6 +112,14 @@ def test_xacro_is_expanded_with_its_arguments_and_packages(arm, tmp_path: Path):
 
 
 ODD = ("", "nan", "inf", "-1", "0", "1e400", "1e308", "abc", "0 0 0", "base")
+
+
+@pytest.mark.parametrize("package", ["yourdfpy", "xacro"])
+def test_a_package_that_is_missing_is_named_with_how_to_install_it(arm, package, tmp_path, monkeypatch):
+    (tmp_path / "arm.xacro").write_text(arm())
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(InputError, match=rf"{package}.*pip install \"liftopt\[robots\]\""):
+        read_robot(arm() if package == "yourdfpy" else tmp_path / "arm.xacro")
 
 
 def _spoilt(text: str, random: Random) -> str:
