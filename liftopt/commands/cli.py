@@ -27,6 +27,7 @@ from liftopt.commands.parser import Parser
 from liftopt.commands.plot import add_plot_parser
 from liftopt.commands.record import add_record_parser
 from liftopt.commands.report import add_report_parser
+from liftopt.commands.robots import add_robots_parser
 from liftopt.commands.scenario import add_scenario_parser
 from liftopt.commands.sensitivity import add_sensitivity_parser
 from liftopt.commands.solve import add_solve_parser
@@ -52,6 +53,7 @@ COMMANDS = (
     add_dry_run_parser,
     add_compare_parser,
     add_scenario_parser,
+    add_robots_parser,
 )
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from liftopt.collocation.separating_planes import WORLD
 from liftopt.search.candidate import Candidate
 from liftopt.search.elastic_clearing import cleared_elastically
 from liftopt.search.held_off import held_off
@@ -54,6 +53,10 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
             found += [] if is_known(attempt.candidate.result.objective, found) else [attempt.candidate]
         else:
             failed.append(attempt)
+        if not found and len(failed) == wanted:
+            found = _out_of_the_lap(clearer, failed[:PASSED])
+            if found:
+                break
     if not found:
         session.blocked = failed
         found = _anyhow(session, clearer, failed[:PASSED])
@@ -86,25 +89,19 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
 
 def _anyhow(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
     """Return clear optima that a detour leads to, from what the overlaps alone did not lead to any."""
-    return (
-        _passing(session, clearer, failed)
-        or [clear for first in failed for clear in _out_of_the_lap(clearer, first)]
-        or _other_sides(clearer, failed)
-    )
+    return _passing(session, clearer, failed) or _out_of_the_lap(clearer, failed) or _other_sides(clearer, failed)
 
 
-def _out_of_the_lap(clearer: Clearer, failed: Attempt) -> list[Candidate]:
-    """Return clear optima with the object held off from whoever holds it; none if it was clear of them."""
-    solids, own = clearer.solids, len(clearer.solids.team.agents)
-    parts = [[solids.bodies[s].part for s in solids.ends[pair]] for pair in failed.deep]
-    if not any(own in ends and WORLD not in ends for ends in parts):
-        return []
+def _out_of_the_lap(clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima with the object held off from whoever holds it."""
     found: list[Candidate] = []
-    for start in sorted(held_off(clearer, failed.origin), key=lambda start: -_least(clearer, start)):
-        attempt = clearer.make_clear(start, also=failed.deep)
-        found += [attempt.candidate] if attempt.clear else []
-        if len(found) == HELD_OFF or clearer.deadline.passed:
-            break
+    for first in failed:
+        starts = held_off(clearer, first.origin, first.deep)
+        for start in sorted(starts, key=lambda start: -_least(clearer, start)):
+            attempt = clearer.make_clear(start, also=first.deep)
+            found += [attempt.candidate] if attempt.clear else []
+            if len(found) == HELD_OFF or clearer.deadline.passed:
+                return found
     return found
 
 

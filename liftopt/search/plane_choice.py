@@ -33,12 +33,14 @@ FLIP, THROUGH = -0.1, 1e4
 # What it costs at a knot to pass on the other side of what stands around than the object: so much, times 1 - cosine.
 BESIDE = 2.0
 # And for who holds the object, on another side of it than where arms, legs and trunk belong.
-OFF_SIDE = {"arm": 20.0, "body": 2.0}
+OFF_SIDE = 20.0
 # Depth costs so much more at the ends where the task places the object, and it can hardly yield.
 FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
 # The object may rest on what stands at an end, this deep [m], and leaves it with this acceleration at least [m/s^2].
 TOUCHING, LEAVING = 1e-3, 0.2
+# There the task holds it, and a row that just touches would leave the solver no interior: it is this far off [m].
+AT_REST = 1e-4
 # Rows of two bodies are made this many at a time, so that the next planes seldom need another structure.
 ROOM = 4
 
@@ -214,7 +216,7 @@ def _off_side(solids: TeamSolids, found: SolidDistances, p: int, directions: Arr
     side = solids.sides[p]
     box = solids.ends[p, 0 if side.object_is_first else 1]
     normal = found.placements[:, box, :3, :3] @ side.normal
-    return np.asarray(OFF_SIDE[side.kind] * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
+    return np.asarray(OFF_SIDE * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
 
 
 def _is_placed(solids: TeamSolids, p: int) -> bool:
@@ -234,6 +236,7 @@ def _wanted(solids: TeamSolids, found: SolidDistances, p: int, options: PlaneOpt
             rest = found.distance[end, p]
             if rest >= options.distance - options.margin - TOUCHING:
                 wanted = np.minimum(wanted, rest + LEAVING / 2 * passed**2)
+                wanted[end] -= AT_REST
     return wanted
 
 

@@ -20,7 +20,7 @@ from liftopt.viz.scene_part import Colour, Part
 SKIN: Colour = (0.86, 0.66, 0.53)
 SHIRT: Colour = (0.16, 0.40, 0.66)
 TO_SIDE = (0.0, 1.0, 0.0)
-INNER, MIDDLE, SEAM = 0.94, 0.98, 0.0004  # of the waist: shares of its section, and a step between two [m]
+MIDDLE, SEAM = 0.98, 0.0004  # of the waist: share of its section in what is half way, and half its straight part [m]
 
 
 def person_parts(bodies: PersonBodies, subject: Subject, shirt: Colour = SHIRT) -> list[Part]:
@@ -61,7 +61,7 @@ def hand_parts(hand: str, subject: Subject, side: float) -> list[Part]:
 
 
 def _trunk(subject: Subject) -> tuple[Mesh, Mesh, Mesh]:
-    """Return what of the shirt moves with the pelvis, half way, and with the trunk; round where they meet."""
+    """Return what of the shirt moves with the pelvis, half way, and with the trunk."""
     at, lengths = landmarks(subject), link_lengths(subject)
     shoulder = lengths.l1 + lengths.l2
     waist = dimension(subject, "waistbreadth") / 2.0, dimension(subject, "waistdepth") / 2.0
@@ -73,16 +73,9 @@ def _trunk(subject: Subject) -> tuple[Mesh, Mesh, Mesh]:
     broad, deep = (0.29 * a + 0.71 * b for a, b in zip(hips, slim, strict=True))
     hem = Ring((0.0, 0.0, at.omphalion - 0.05), *hips, 2.4)
     joint = Ring((0.0, 0.0, at.omphalion), broad, deep, 2.4)
-    # Below and above the joint each goes on under the other: as a dome, nearer to the joint than the ball between them.
-    # The section once more before the step: so the side does not share its normals with it.
-    under, middle, inner = (
-        [Ring((0.0, 0.0, at.omphalion + z), size * broad, size * deep, 2.4) for z in (-step, step)]
-        for size, step in ((1.0, SEAM), (MIDDLE, SEAM), (INNER, 2.0 * SEAM))
-    )
-    lower = [hem, joint, under[1], inner[1]]
+    # Both end flat at the joint, one on the other while upright; where it bends, what is half way shows between them.
+    middle = [Ring((0.0, 0.0, at.omphalion + z), MIDDLE * broad, MIDDLE * deep, 2.4) for z in (-SEAM, SEAM)]
     rings = [
-        inner[0],
-        under[0],
         joint,
         Ring((0.0, 0.0, at.omphalion + 0.02), *slim, 2.4),
         Ring((0.0, 0.0, 0.5 * (at.omphalion + at.xiphion)), 1.01 * waist[0], waist[1], 2.4),
@@ -94,9 +87,9 @@ def _trunk(subject: Subject) -> tuple[Mesh, Mesh, Mesh]:
         Ring((-0.015, 0.0, shoulder + 1.15 * rise), 1.16 * neck, 1.2 * neck, 2.0),
     ]
     return (
-        tube(lower, TO_SIDE, round_start=0.015, round_end=inner[0].along),
+        tube([hem, joint], TO_SIDE, round_start=0.015),
         tube(middle, TO_SIDE, round_start=middle[0].along, round_end=middle[0].along),
-        tube(rings, TO_SIDE, round_start=inner[0].along),
+        tube(rings, TO_SIDE),
     )
 
 

@@ -118,15 +118,16 @@ def _nearest(cast: Cast) -> dict[str, Any] | None:
 
 
 def _hands(casts: Sequence[Cast]) -> list[dict[str, str]]:
-    """Return grasp, colour and words of every hand whose force is shown."""
-    agents, rows = agents_in(casts), []
-    for agent in agents:
-        who = who_is(agent, agents)
-        called = f"the {WORDS[agent.kind]}" if who.is_alone else agent.name
-        for grasp in agent.grasps:
-            words = called if len(agent.grasps) == 1 else f"{called}'s {hand_of(grasp.name, who)}"
-            rows.append({"name": grasp.name, "who": words, "colour": _hex(colour_of(agents, agent))})
-    return rows
+    """Return grasp, colour and words of every hand whose force is shown in either lift, agent by agent."""
+    agents, rows = agents_in(casts), {}
+    for first in agents:
+        who, colour = who_is(first, agents), colour_of(agents, first)
+        called = f"the {WORDS[first.kind]}" if who.is_alone else first.name
+        for agent in (one for cast in casts for one in cast.solution.agents if one.name == first.name):
+            for grasp in agent.grasps:
+                words = called if len(agent.grasps) == 1 else f"{called}'s {hand_of(grasp.name, who)}"
+                rows[grasp.name] = {"name": grasp.name, "who": words, "colour": _hex(colour)}
+    return list(rows.values())
 
 
 def _labels(casts: Sequence[Cast]) -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.lift import subject_in
+from liftopt.ergonomics.limbs import has_legs
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
 from liftopt.viz.scene import Cast, obstacle_part
@@ -18,6 +19,7 @@ Box = list[list[float]]
 # Around joints: what of a person, a robot and the hands is in view [m].
 BODY, ROBOT, HANDS = 0.25, 0.05, 0.18
 NEARBY = 0.5  # of an obstacle, so much around everybody is in view [m]
+SEAT = 0.14  # around the hips of one whose legs bend [m]
 # A robot's pedestal ahead of its base, behind it and to its sides, and its head above it [m].
 AHEAD, BEHIND, ASIDE, HEAD = 0.2, 0.5, 0.35, 0.65
 # From where an agent is seen in its own preset: ahead of it, to its left, up.
@@ -140,9 +142,13 @@ def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
             for y in (-aside, aside):
                 points += [(world_base @ (x, y, 0.0, 1.0))[:3] * (1.0, 1.0, 0.0) + cast.offset]
                 points += [points[-1] + (0.0, 0.0, top)]
-        points += [row for grasp in agent.grasps for row in playback.forces[grasp.name].point + cast.offset]
+        (own,) = (one for one in cast.solution.agents if one.name == agent.name)  # it may hold otherwise in this lift
+        points += [row for grasp in own.grasps for row in playback.forces[grasp.name].point + cast.offset]
         points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
-    room = 0.0 if agent.kind == "person" else ROBOT
+    if agent.kind == "person":
+        room = np.array([SEAT, SEAT, 0.0]) if has_legs(agent) else np.zeros(3)
+    else:
+        room = np.full(3, ROBOT)
     return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
 
 

@@ -27,8 +27,10 @@ SIDES = (("right", "R", -1.0), ("left", "L", 1.0))
 # In degrees: legs ankle, knee, hip; trunk Q2; of both arms Q4, Q5, Q6, Q7, Q8, Q9, Q10.
 LOW = {
     "squat": (30.0, 105.0, 85.0, 25.0, (-15.0, 60.0, 12.0, -40.0, -70.0, -8.0, 6.0)),
+    "straight": (-8.0, 12.0, 60.0, 35.0, (-5.0, 80.0, 2.0, -4.0, -60.0, -6.0, 2.0)),
     "stoop": (-8.0, 12.0, 70.0, 45.0, (-12.0, 105.0, 10.0, -25.0, -60.0, -10.0, 5.0)),
 }
+STRAIGHT = (-5.0, 5.0, 2.0, -4.0, -60.0, -5.0, 2.0)
 HIGH = (-10.0, 20.0, 8.0, -75.0, -60.0, -5.0, 4.0)
 BOX = np.array([[0.15, 0.2, 0.1], [0.15, -0.2, 0.1], [-0.15, 0.2, 0.15], [-0.15, -0.2, 0.05]])
 MAPPING: dict[str, Any] = {
@@ -88,17 +90,42 @@ class WholeTruth:
 
 
 def whole_truth(kind: str) -> WholeTruth:
-    """Return a ``"squat"`` or ``"stoop"`` lift with both hands: upright, down to the box, up with it."""
+    """Return a ``"squat"`` or ``"stoop"`` lift with both hands, or a stoop with ``"straight"`` arms.
+
+    The person is upright, down to the box, up with it.
+    """
     own, links = WholeLengths.of(SUBJECT), link_lengths(SUBJECT)
     hip = landmarks(SUBJECT).ankle + 0.40 + 0.41
     base = hip + SEGMENTS["female"]["lower_trunk"].length * SUBJECT.stature
     right = replace(links, l1=base, l2=0.30, l3=0.17, l4=0.28, l5=0.25, l6=0.07)
     lengths = WholeLengths(right, replace(right, l4=0.27, l5=0.245, l6=0.072), own.ankle, hip - 0.41, hip, 0.02)
     urdf = whole_human_urdf(SUBJECT, measured=lengths)
-    model = load_model(urdf)
-    names = list(model.names)[1:]
-    q = _motion(kind, names)
-    places = _at_zero(lengths)
+    q = _motion(kind, list(load_model(urdf).names)[1:])
+    seen = points_on(lengths, urdf, q)
+    middle = (seen["RGrasp"] + seen["LGrasp"]) / 2.0
+    lifted = np.arange(FRAMES) >= FRAMES // 2
+    box = np.where(lifted[:, None], middle, middle[FRAMES // 2])
+    box = box + np.array([0.15, 0.0, 0.0])
+    return _with_recording(q, lengths, urdf, box, seen)
+
+
+def recorded_truth(lengths: WholeLengths, urdf: str, q: Array, box: Array, turn: Array) -> WholeTruth:
+    """Return what a laboratory would have recorded at ``RATE`` of any motion of a person and a box.
+
+    Args:
+        lengths: of the person.
+        urdf: of the person, who stands at the origin and faces X.
+        q: (F, 20).
+        box: (F, 3) its centre in the world [m].
+        turn: (F, 3, 3) its axes in the world.
+    """
+    seen = points_on(lengths, urdf, q)
+    return _with_recording(q, lengths, urdf, box, seen, turn)
+
+
+def points_on(lengths: WholeLengths, urdf: str, q: Array) -> dict[str, Array]:
+    """Return by label where markers, in capitals, and joint centres are (F, 3) in the world [m]."""
+    model, places = load_model(urdf), _at_zero(lengths)
     zero, data = model.createData(), model.createData()
     pin.forwardKinematics(model, zero, np.zeros(model.nq))
     joints = {name: model.getJointId(f"human_{name}") for name in places if name != "feet"}
@@ -109,17 +136,19 @@ def whole_truth(kind: str) -> WholeTruth:
             for label, at in group.items():
                 joint = joints.get(name, 0)
                 points[label].append(data.oMi[joint].act(zero.oMi[joint].actInv(at)))
-    seen = {label: np.array(path) for label, path in points.items()}
-    middle = (seen["RGrasp"] + seen["LGrasp"]) / 2.0
-    lifted = np.arange(FRAMES) >= FRAMES // 2
-    box = np.where(lifted[:, None], middle, middle[FRAMES // 2])
-    box = box + np.array([0.15, 0.0, 0.0])
-    seen |= {f"B{i + 1}": box + at for i, at in enumerate(BOX)}
+    return {label: np.array(path) for label, path in points.items()}
+
+
+def _with_recording(
+    q: Array, lengths: WholeLengths, urdf: str, box: Array, seen: dict[str, Array], axes: Array | None = None
+) -> WholeTruth:
+    turns = np.broadcast_to(np.eye(3), (len(q), 3, 3)) if axes is None else axes
+    marked = [label for label in seen if label.isupper()]
+    seen = seen | {f"B{i + 1}": box + turns @ at for i, at in enumerate(BOX)}
     c, s = np.cos(HEADING), np.sin(HEADING)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    blank = Recording("synthetic", RATE, np.arange(FRAMES) / RATE, (), np.zeros((FRAMES, 0, 3)), "mm", "Z")
+    blank = Recording("synthetic", RATE, np.arange(len(q)) / RATE, (), np.zeros((len(q), 0, 3)), "mm", "Z")
     truth = WholeTruth(blank, q, lengths, urdf, box, turn, seen)
-    marked = [label for group in places.values() for label in group if label.isupper()]
     return replace(truth, recording=truth.with_labels(*marked))
 
 
@@ -130,7 +159,8 @@ def _motion(kind: str, names: list[str]) -> Array:
     high = {}
     for side in ("right", "left"):
         for k in range(7):
-            low[f"human_{side}_Q{k + 4}"], high[f"human_{side}_Q{k + 4}"] = arm[k], HIGH[k]
+            above = STRAIGHT if kind == "straight" else HIGH
+            low[f"human_{side}_Q{k + 4}"], high[f"human_{side}_Q{k + 4}"] = arm[k], above[k]
     low |= {"human_Q3": 4.0, "human_right_Q5": low["human_right_Q5"] + 4.0, "human_left_Q7": arm[3] - 6.0}
     time = np.arange(FRAMES) / (FRAMES - 1.0)
     down = np.clip((time - 0.13) / 0.34, 0.0, 1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,13 @@ from liftopt.multibody.agent import Agent
 from liftopt.multibody.solids import Solid, solids_of
 from liftopt.scenario.build import agents_of, subject_of
 from liftopt.scenario.model import load_scenario
-from liftopt.viz.scene_person import FREE_ARM, person_parts
+from liftopt.viz.person_bodies import FREE_ARM, PersonBodies
+from liftopt.viz.scene_person import person_parts
 from liftopt.viz.scene_sawyer import sawyer_parts
 
 SCENARIO = load_scenario()
 HUMAN, ROBOT = agents_of(SCENARIO)
+WHOLE, _ = agents_of(SCENARIO.replace({"human.body": "whole"}))
 WORLD_BASE = np.array([[-1.0, 0.0, 0.0, 1.9], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.915], [0.0, 0.0, 0.0, 1.0]])
 # [m], as far as simple shapes may miss a figure; a leg of the pedestal ends in a small foot.
 ROUGH = 0.025
@@ -46,8 +48,11 @@ def test_sawyers_shapes_hold_its_figure(part: Any, coal_distance: ModuleType) ->
     assert _outside(part, ROBOT, coal_distance) < ROUGH
 
 
-@pytest.mark.parametrize("name", ["right_upper_arm", "right_forearm", "left_upper_arm", "left_forearm", "left_leg"])
-def test_a_persons_shapes_hold_the_limbs(name: str, coal_distance: ModuleType) -> None:
-    subject = subject_of(SCENARIO.first("person"))
-    (part,) = (part for part in person_parts("human", subject) if part.name == name)
-    assert _outside(part, HUMAN, coal_distance) < ROUGH
+@pytest.mark.parametrize("agent", [HUMAN, WHOLE], ids=["arm", "whole"])
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize("limb", ["upper_arm", "forearm", "thigh", "shank"])
+def test_a_persons_shapes_hold_the_limbs(limb: str, side: str, agent: Agent, coal_distance: ModuleType) -> None:
+    person = SimpleNamespace(name=agent.name, joint_names=agent.model.names, grasps=())
+    figure = person_parts(PersonBodies.of(person), subject_of(SCENARIO.first("person")))  # type: ignore[arg-type]
+    (part,) = (part for part in figure if part.name == f"{side}_{limb}")
+    assert _outside(part, agent, coal_distance) < ROUGH

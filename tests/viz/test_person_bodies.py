@@ -200,11 +200,15 @@ def test_a_handle_is_a_slot_where_the_fingers_reach_in(team_solution: Callable[[
     assert np.all(np.array(tips)[:, 1] < box.width / 2)
 
 
-def test_the_whole_lift_is_in_view_with_its_object(squat: Any) -> None:
-    """Corners of the box at both ends, by the scenario."""
+def test_the_whole_lift_is_in_view_with_its_object(squat: Any, cast: Cast) -> None:
+    """Corners of the box at both ends, by the scenario; and all of the figure that squats, to a centimetre."""
     playback = playback_at(squat, squat.time[[0, -1]])
     low, high = np.array(views_of([Cast(squat, playback, "/lift")])[0].box)
     box = squat.scenario.object
     for pose in squat.object.pose[[0, -1]]:
         half = np.array([box.depth, box.width, box.height]) / 2
         assert np.all(low <= pose[:3] - half + 1e-3) and np.all(pose[:3] + half - 1e-3 <= high)
+    figure = [part for part in parts_of(cast) if part.body.startswith("human")]
+    for body in bodies_at(cast, figure, 0):
+        assert np.all(body.mesh.vertices > low - 0.01)
+        assert np.all(body.mesh.vertices < high + 0.01)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,11 @@ DRAWN = 2e-5  # [m], and as a cosine: the page rounds positions to 10 um, quater
 @pytest.fixture(scope="module")
 def team(team_solution: Callable[[str], Any]) -> Any:
     return team_solution("squat")
+
+
+@pytest.fixture(scope="module")
+def two_robots(team_solution: Callable[[str], Any]) -> Any:
+    return team_solution("two_robots")
 
 
 @pytest.fixture(scope="module")
@@ -68,3 +74,26 @@ def test_seen_from_ahead_the_person_is_solid_from_the_feet_to_the_head(opened: A
         ("human_left_palm", "palm"),
     ):
         assert opened.run(solid.format(body, part)) == 1, part
+
+
+def test_a_lift_with_two_hands_stands_beside_one_with_one(
+    team: Any, two_robots: Any, open_page: Callable[..., Any], tmp_path: Path
+) -> None:
+    """Each lift fills the rows of the hands that it has."""
+    file = tmp_path / "both.html"
+    file.write_text(playback_page(team.solution, two_robots.solution), encoding="utf-8")
+    opened = open_page(file)
+    opened.run("liftopt.seek(1)")
+    rows = opened.page.eval_on_selector_all(
+        "#facts tr", "all => all.map((each) => [...each.children].map((cell) => cell.innerText.trim()))"
+    )
+    words = {row[0]: row[1:] for row in rows if row[0].startswith("force of")}
+    shown = {name: [bool(cell) for cell in cells] for name, cells in words.items()}
+    assert shown == {
+        "force of the human's right hand": [True, False],
+        "force of the human's left hand": [True, False],
+        "force of the human": [False, True],
+        "force of near": [False, True],
+        "force of far": [False, True],
+    }
+    assert opened.complaints == []

@@ -113,7 +113,7 @@ def joint_centres(recording: Recording, mapping: WholeMap, sex: Sex) -> Centres:
         inward = -OUTWARD[side] * pelvis.rotation[:, :, 1]
         for name in ("knee", "ankle"):
             joint[side, name] = _of_leg(found, side, name, BREADTH[name][sex] * inward)
-        arm, lefts = _arm(found, side, shoulder, sex)
+        arm, lefts = _arm(found, side, shoulder, trunk.rotation[:, :, 1], sex)
         joint |= {(side, name): centre for name, centre in arm.items()}
         across |= {(side, name): left for name, left in lefts.items()}
     return Centres(joint, across, pelvis, trunk, found.has("asis", "right"))
@@ -189,8 +189,10 @@ def _of_leg(found: Landmarks, side: str, name: str, inward: Array) -> Array:
     )
 
 
-def _arm(found: Landmarks, side: str, shoulder: Array, sex: Sex) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return elbow, wrist and knuckle, and which way is left of upper arm, forearm and hand."""
+def _arm(
+    found: Landmarks, side: str, shoulder: Array, left: Array, sex: Sex
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Return elbow, wrist and knuckle, and which way is left of upper arm, forearm and hand; ``left`` of the trunk."""
     inward, unknown = -OUTWARD[side], np.full_like(shoulder, np.nan)
     has_wrist_sides = found.has("wrist_radial", side)
     radial, ulnar = (
@@ -207,7 +209,7 @@ def _arm(found: Landmarks, side: str, shoulder: Array, sex: Sex) -> tuple[dict[s
     else:
         outer = found.at("elbow_lateral", side)
         upper_arm = _bend_axis(shoulder, outer, wrist)
-        elbow = outer + 0.5 * BREADTH["elbow"][sex] * inward * _carried_on(upper_arm)
+        elbow = outer + 0.5 * BREADTH["elbow"][sex] * inward * _carried_on(upper_arm, left)
     index, middle, little = (
         found.at(name, side) if found.has(name, side) else unknown
         for name in ("knuckle_index", "knuckle_middle", "knuckle_little")
@@ -232,10 +234,10 @@ def _bend_axis(shoulder: Array, elbow: Array, wrist: Array) -> Array:
     return np.where(bent[:, None], unit(np.where(bent[:, None], axis, 1.0)), np.nan)
 
 
-def _carried_on(axis: Array) -> Array:
-    """Return an axis (F, 3) where it is unknown as it is before and after; 0 if it is known nowhere."""
+def _carried_on(axis: Array, otherwise: Array) -> Array:
+    """Return an axis (F, 3) where it is unknown as it is before and after; another one if it is known nowhere."""
     known = np.flatnonzero(were_seen(axis))
     if not known.size:
-        return np.zeros_like(axis)
+        return otherwise
     frames = np.arange(len(axis))
     return unit(np.stack([np.interp(frames, known, axis[known, i]) for i in range(3)], axis=1))

@@ -8,7 +8,7 @@ from math import degrees, isfinite
 from liftopt.errors import NO_VALUE
 from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.data_finding import DataFinding
-from liftopt.multibody.robots.description import RobotJoint
+from liftopt.multibody.robots.description import LARGEST_NUMBER, RobotJoint
 from liftopt.multibody.robots.joint_ranges import JointRange
 
 ENOUGH = 3  # joints from which one value for all of them looks like a placeholder
@@ -34,17 +34,16 @@ def limit_findings(chain: RobotChain) -> Iterator[DataFinding]:
     if len(turning) >= ENOUGH and len(efforts) == 1 and (effort := turning[0].effort):
         message = f"the same on all {len(turning)} joints, it looks like a placeholder"
         yield DataFinding("effort.same", "warned", "effort", effort, message, _give("JOINT", "effort"))
-    for joint in turning:
-        if joint.effort is not None and isfinite(joint.effort) and joint.effort >= LARGEST_EFFORT:
-            message = f"{LARGEST_EFFORT:g} Nm or more: it looks like a placeholder"
-            yield DataFinding("effort.large", "warned", f"joint {joint.name}: effort", joint.effort, message,
-                              _give(joint.name, "effort"))  # fmt: skip
-    fast = [joint for joint in turning if joint.velocity is not None and joint.velocity >= LARGEST_VELOCITY]
-    if fast:
-        names = ", ".join(joint.name for joint in fast)
-        message = f"no arm turns as fast: {names}"
-        yield DataFinding("velocity.large", "warned", "velocity", fast[0].velocity, message,
-                          _give("JOINT", "velocity"))  # fmt: skip
+    yield from _large("effort", turning, LARGEST_EFFORT, "the arms that work beside people have less")
+    yield from _large("velocity", turning, LARGEST_VELOCITY, "no arm turns as fast")
+
+
+def _large(name: str, joints: list[RobotJoint], from_here: float, message: str) -> Iterator[DataFinding]:
+    """Give the joints whose limit is so large that it looks like a placeholder, all in one finding."""
+    large = {joint.name: float(value) for joint in joints if (value := getattr(joint, name)) and value >= from_here}
+    if large and all(isfinite(value) for value in large.values()):
+        told = f"{message}, it looks like a placeholder: {', '.join(large)}"
+        yield DataFinding(f"{name}.large", "warned", name, max(large.values()), told, _give("JOINT", name))
 
 
 def _range(joint: RobotJoint, ends: JointRange) -> Iterator[DataFinding]:
@@ -52,8 +51,8 @@ def _range(joint: RobotJoint, ends: JointRange) -> Iterator[DataFinding]:
     shown = f"{ends.lower:.4g} to {ends.upper:.4g}"
     if ends.source == "nothing":
         yield DataFinding("range.missing", "refused", where, NO_VALUE, f"a {joint.kind} joint needs one", fix)
-    elif not (isfinite(ends.lower) and isfinite(ends.upper)):
-        yield DataFinding("range.value", "refused", where, shown, "must be numbers", fix)
+    elif not (abs(ends.lower) <= LARGEST_NUMBER and abs(ends.upper) <= LARGEST_NUMBER):  # NaN is not, either
+        yield DataFinding("range.value", "refused", where, shown, f"must be within {LARGEST_NUMBER:g}", fix)
     elif ends.lower > ends.upper:
         yield DataFinding("range.inverted", "refused", where, shown, "its lower end is above its upper end", fix)
     elif ends.lower == ends.upper:
@@ -76,8 +75,9 @@ def _largest(joint: RobotJoint, name: str, value: float | None) -> Iterator[Data
     where = f"joint {joint.name}: {name}"
     if value is None:
         yield DataFinding(f"{name}.missing", "refused", where, NO_VALUE, "the URDF has none", _give(joint.name, name))
-    elif not isfinite(value) or value <= 0.0:
-        yield DataFinding(f"{name}.value", "refused", where, value, "must be positive", _give(joint.name, name))
+    elif not 0.0 < value <= LARGEST_NUMBER:
+        message = f"must be positive, and at most {LARGEST_NUMBER:g}"
+        yield DataFinding(f"{name}.value", "refused", where, value, message, _give(joint.name, name))
 
 
 def _give(joint: str, name: str) -> str:

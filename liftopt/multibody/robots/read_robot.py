@@ -23,6 +23,11 @@ from liftopt.types import Array
 
 TEXT = "URDF"  # what messages call a text that is no file
 MOMENTS = ("ixx", "iyy", "izz")  # the products of inertia may be left out, these may not
+NEEDED = {
+    "link": ("inertial",),
+    "inertial": ("origin", "mass", "inertia"),
+    "joint": ("origin", "parent", "child", "axis", "limit", "mimic", "safety_controller"),
+}
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
@@ -36,7 +41,7 @@ def read_robot(source: str | Path, *, arguments: Mapping[str, str] = NOTHING) ->
     Raises:
         InputError: the file cannot be read, is no URDF, or a package that reads it is not installed.
     """
-    if isinstance(source, str) and source.lstrip().startswith("<"):
+    if isinstance(source, str) and (source.lstrip().startswith("<") or "\n" in source):
         return _described(source, TEXT, None)
     path = Path(source)
     text = _text(path)
@@ -69,18 +74,23 @@ def _described(text: str, source: str, path: Path | None) -> RobotDescription:
 
 
 def _parsed(tree: Element, source: str) -> Any:
-    """Return yourdfpy's robot; elements that it would stumble over and that no dynamics need are left out."""
+    """Return yourdfpy's robot, of the elements that dynamics need and no others, over which it might stumble."""
     try:
         import yourdfpy
     except ImportError:
         raise InputError(source, NO_VALUE, f"the package yourdfpy reads URDFs: {INSTALL}") from None
     bare = Element("robot", name=tree.get("name") or "robot")
     for element in (*tree.findall("link"), *tree.findall("joint")):
-        copy = Element(element.tag, element.attrib)
-        copy.extend([inner for inner in element if inner.tag not in ("visual", "collision", "calibration")])
-        bare.append(copy)
+        bare.append(_needed(element))
     content = BytesIO(ElementTree.tostring(bare))
     return yourdfpy.URDF.load(content, build_scene_graph=False, load_meshes=False).robot
+
+
+def _needed(element: Element) -> Element:
+    """Return an element without what it holds that is not in ``NEEDED``."""
+    copy = Element(element.tag, element.attrib)
+    copy.extend([_needed(inner) for inner in element if inner.tag in NEEDED.get(element.tag, ())])
+    return copy
 
 
 def _link(link: Any, element: Element, path: Path | None) -> RobotLink:
@@ -101,7 +111,8 @@ def _body(inertial: Any, element: Element) -> BodyInertia:
         inertia = np.full((3, 3), np.nan if mass != 0.0 else 0.0)
     else:
         inertia = np.asarray(inertial.inertia, dtype=np.float64)
-    return BodyInertia(mass, np.zeros(3), inertia).transformed(origin[:3, :3], origin[:3, 3])
+    with np.errstate(all="ignore"):  # endless ones are judged later
+        return BodyInertia(mass, np.zeros(3), inertia).transformed(origin[:3, :3], origin[:3, 3])
 
 
 def _joint(joint: Any, source: str) -> RobotJoint:

@@ -13,7 +13,9 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.errors import InputError
+from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.chain import ChainLink, RobotChain
+from liftopt.multibody.robots.description import LARGEST_NUMBER
 from liftopt.multibody.robots.sawyer_shapes import tool_shapes
 from liftopt.multibody.robots.tool import tool_body
 from liftopt.multibody.shapes import Capsule, Colour, Shape
@@ -62,7 +64,7 @@ def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length
         parent, before = own, back
     stand = tuple(_tube(f"{base}_tube", chain.links[0].placement[:3, 3], radius))
     flange = before @ chain.T_last_grasp
-    fixed = [FixedLink(base, "world", T_world_base, chain.base_body, stand)]
+    fixed = [FixedLink(base, "world", T_world_base, _sound(chain.base_body), stand)]
     if tool_length or tool_mass:
         fixed.append(
             FixedLink(f"{name}_tool", parent, flange, tool_body(tool_length, tool_mass), tool_shapes(tool_length))
@@ -71,6 +73,12 @@ def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length
     tip[2, 3] = tool_length
     fixed.append(FixedLink(f"{name}_grasp", parent, flange @ tip))
     return urdf_text(tree_robot(name, moving, fixed))
+
+
+def _sound(body: BodyInertia) -> BodyInertia:
+    """Return a body that does not move, or none in its place where its mass properties are no numbers."""
+    numbers = np.array([body.mass, *body.com, *body.inertia.ravel()])
+    return body if (np.abs(numbers) <= LARGEST_NUMBER).all() else BodyInertia.zero()
 
 
 def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotChain) -> list[str]:

@@ -160,6 +160,22 @@ def test_plug_in_gait_has_half_the_markers(kind: str) -> None:
     assert any(note.startswith("knee, ankle, elbow: a marker on the outer side only") for note in found.notes)
 
 
+def test_arms_that_never_bend_show_no_axis_of_the_elbow() -> None:
+    """A marker on the outer side only: its centre is inwards of it along the trunk's left, and the elbow straight."""
+    truth = whole_truth("straight")
+    names = {"CLAV": "STER", "STRN": "XIPH", "T10": "T8", "C7": "C7"}
+    pairs = {"WRA": "WRR", "WRB": "WRU", "FIN": "MC2"}
+    same = ("ASI", "PSI", "KNE", "ANK", "HEE", "TOE", "SHO", "ELB")
+    names |= {s + label: s + pairs.get(label, label) for s in "RL" for label in (*same, *pairs)}
+    recording = replace(truth.with_labels(*names.values()), labels=(*names, "B1", "B2", "B3", "B4"))
+    mapping = load_marker_map("plug_in_gait")
+    subject = mapping.subject.changed(sex="female", mass=SUBJECT.mass, stature=SUBJECT.stature)
+    found = recorded_lift(recording, mapping.changed(subject=subject), None, CUTOFF)
+    assert found.lengths.l4 == pytest.approx(truth.lengths.links.l4, abs=0.005)
+    for side in ("right", "left"):
+        assert np.abs(np.degrees(found.q[:, found.joint_names.index(f"human_{side}_Q7")])).max() < 15.0
+
+
 def test_video_gives_joint_centres_only(squat: WholeTruth) -> None:
     labels = [s + name for s in "RL" for name in ("Hip", "Knee", "Ankle", "Shoulder", "Elbow", "Wrist")]
     recording = squat.with_labels(*labels)

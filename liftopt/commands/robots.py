@@ -1,0 +1,186 @@
+"""``liftopt robots``: which are known by name, and what is noticed about the data of one, or of a file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from liftopt.commands.exit_status import DONE, NOT_SOLVED
+from liftopt.commands.terminal import captured, write
+from liftopt.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from liftopt.multibody.robots.data_finding import DataFinding
+    from liftopt.multibody.robots.examination import Examination
+    from liftopt.multibody.robots.known_robot import KnownRobot
+
+LISTED = ("name", "robot", "maker", "lifts", "installed")
+JOINTS = ("joint", "kind", "from", "to", "speed", "effort")
+HEADS = {"refused": "Refused", "warned": "Warning", "assumed": "Assumed"}
+
+
+def add_robots_parser(commands: Any) -> None:
+    """Add the command to the subparsers ``commands``."""
+    parser = commands.add_parser(
+        "robots",
+        help="robots that are known by name; what a URDF or xacro file lacks",
+        description="Without ROBOT, list the robots that are known by name. With one, say what it is, what is assumed "
+        "about it, and what is missing or wrong in its data, each with the fix; exit status 3 if it cannot lift.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("robot", nargs="?", metavar="ROBOT", help="a name from the list, or a URDF or xacro file")
+    parser.add_argument("--grasp-frame", metavar="LINK", help="link that it holds with; by default one is proposed")
+    parser.add_argument("--base", metavar="LINK", help="link that is bolted down (default: the root)")
+    parser.add_argument(
+        "--lock", action="append", default=[], metavar="JOINT=VALUE", help="hold a joint there, in rad or m; repeatable"
+    )
+    parser.add_argument(
+        "--arg", action="append", default=[], metavar="NAME=VALUE", help="an argument of a xacro file; repeatable"
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=robots)
+
+
+def robots(args: argparse.Namespace) -> int:
+    """Do what the command line says and return the exit status.
+
+    Raises:
+        InputError: there is no such robot, its file is no robot, or an option is wrong.
+    """
+    if args.robot is None:
+        for option in ("grasp_frame", "base", "lock", "arg"):
+            if value := getattr(args, option):
+                raise InputError(f"--{option.replace('_', '-')}", value, "needs a ROBOT")
+        write(_list_json() if args.json else captured(_print_list))
+        return DONE
+    from liftopt.multibody.robots.catalogue import known_or_path
+
+    known = known_or_path(args.robot)
+    found = _examined(known, args)
+    status = NOT_SOLVED if found.refused else DONE
+    if args.json:
+        name = None if isinstance(known, Path) else known.name
+        write(json.dumps({"known_as": name, **found.plain(), "exit_status": status}, indent=2, allow_nan=False) + "\n")
+    else:
+        write(captured(lambda console: _print(found, known, console)))
+    return status
+
+
+def _examined(known: KnownRobot | Path, args: argparse.Namespace) -> Examination:
+    from liftopt.multibody.robots.catalogue import examined_robot
+    from liftopt.multibody.robots.examination import examined
+    from liftopt.multibody.robots.read_robot import read_robot
+
+    locked = {name: _number("--lock", name, value) for name, value in _pairs("--lock", args.lock)}
+    if not isinstance(known, Path):
+        for option, given in (("--grasp-frame", args.grasp_frame), ("--base", args.base), ("--arg", args.arg)):
+            if given:
+                raise InputError(option, given, f"goes with a file; of {known.name} it is known")
+        if locked:
+            raise InputError("--lock", args.lock, f"goes with a file; of {known.name} it is known")
+        return examined_robot(known)
+    description = read_robot(known, arguments=dict(_pairs("--arg", args.arg)))
+    return examined(description, grasp_frame=args.grasp_frame, base=args.base, locked=locked)
+
+
+def _pairs(option: str, words: list[str]) -> list[tuple[str, str]]:
+    pairs = []
+    for word in words:
+        name, equals, value = word.partition("=")
+        if not name or not equals:
+            raise InputError(option, word, "must be NAME=VALUE")
+        pairs.append((name, value))
+    return pairs
+
+
+def _number(option: str, name: str, value: str) -> float:
+    try:
+        return float(value)
+    except ValueError:
+        raise InputError(f"{option} {name}", value, "must be a number of rad or m") from None
+
+
+def _list_json() -> str:
+    from liftopt.multibody.robots.catalogue import known_robots
+
+    listed = [
+        {
+            "name": robot.name,
+            "title": robot.title,
+            "maker": robot.maker,
+            "file": robot.file,
+            "base": robot.base,
+            "grasp_frame": robot.grasp_frame,
+            "locked": dict(robot.locked),
+            "payload_kg": robot.payload,
+            "payload_source": None if robot.payload_source is None else robot.payload_source.told,
+            "installed": robot.is_installed,
+        }
+        for robot in known_robots().values()
+    ]
+    return json.dumps({"robots": listed, "exit_status": DONE}, indent=2) + "\n"
+
+
+def _print_list(console: Console) -> None:
+    from rich.table import Table
+
+    from liftopt.multibody.robots.catalogue import known_robots
+    from liftopt.multibody.robots.xacro_text import INSTALL
+
+    table = Table(*LISTED, box=None, header_style="bold", pad_edge=False)
+    known = list(known_robots().values())
+    for robot in known:
+        payload = "" if robot.payload is None else f"{robot.payload:g} kg"
+        table.add_row(robot.name, robot.title, robot.maker, payload, "yes" if robot.is_installed else "no")
+    console.print(table)
+    told = "\nliftopt robots NAME says what is known of one, liftopt robots FILE looks a URDF or xacro file through."
+    if not all(robot.is_installed for robot in known):
+        told += f"\nThose that are not installed come with: {INSTALL}"
+    console.print(told, markup=False, highlight=False, soft_wrap=True)
+
+
+def _alike(findings: Iterable[DataFinding]) -> list[list[DataFinding]]:
+    """Return findings in groups that say the same of several links or joints, the groups in order."""
+    groups: dict[tuple[str, str], list[DataFinding]] = {}
+    for finding in findings:
+        groups.setdefault((finding.code, finding.message), []).append(finding)
+    return list(groups.values())
+
+
+def _print(found: Examination, known: KnownRobot | Path, console: Console) -> None:
+    from rich.table import Table
+
+    def say(text: str) -> None:
+        console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    chain = found.chain
+    if isinstance(known, Path):
+        say(f"{chain.description.name}, from {known}")
+    else:
+        say(f"{known.name}: {known.title}, {known.maker}" + ("" if known.path is None else f", from {known.path}"))
+        if known.payload is not None and known.payload_source is not None:
+            say(f"It lifts {known.payload:g} kg: {known.payload_source.told}")
+    say(
+        f"{len(chain.links)} joints move {chain.moving_mass:.3g} kg between the base {chain.base} and the grasp frame "
+        f"{chain.grasp_frame}; the links, one after the other, reach {chain.reach:.3g} m"
+    )
+    table = Table(*JOINTS, box=None, header_style="bold", pad_edge=False)
+    for joint, ends in zip(chain.joints, chain.ranges, strict=True):
+        slides = joint.kind == "prismatic"
+        numbers = (ends.lower, ends.upper, joint.velocity, joint.effort)
+        units = ("m", "m", "m/s", "N") if slides else ("rad", "rad", "rad/s", "Nm")
+        table.add_row(
+            joint.name,
+            joint.kind,
+            *("none" if n is None else f"{n:.4g} {unit}" for n, unit in zip(numbers, units, strict=True)),
+        )
+    console.print(table)
+    for first, *others in _alike(found.findings):
+        also = f" (and {', '.join(other.where for other in others)})" if others else ""
+        say(f"{HEADS[first.severity]}: {first.told}{also}")
+    say("It cannot lift with these data." if found.refused else "It can lift with these data.")
