@@ -15,6 +15,7 @@ GALLERY = (
     "sensitivity",
     "pareto",
     "replanning",
+    "whole_person",
     "two_people",
     "two_robots",
 )

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -28,12 +27,10 @@ class HolderSide:
 
     Attributes:
         normal: (3,) unit vector from the second solid of the pair to the first, in the object's axes.
-        kind: ``"arm"``, or legs and trunk, ``"body"``.
         object_is_first: whether the object is the first solid of the pair.
     """
 
     normal: Array
-    kind: Literal["arm", "body"]
     object_is_first: bool
 
 
@@ -52,7 +49,7 @@ def holder_sides(
     """
     found: dict[int, HolderSide] = {}
     own = len(team.agents)
-    known: dict[Body, tuple[Array, Literal["arm", "body"]] | None] = {}
+    known: dict[Body, Array | None] = {}
     for p, (one, other) in enumerate(ends.tolist()):
         first = bodies[one].part == own
         part, box = (other, one) if first else (one, other)
@@ -62,16 +59,16 @@ def holder_sides(
         if body not in known:
             known[body] = _side_of(team, body, solids[box])
         if (side := known[body]) is not None:
-            found[p] = HolderSide(-side[0] if first else side[0], side[1], first)
+            found[p] = HolderSide(-side if first else side, first)
     return found
 
 
-def _side_of(team: Team, body: Body, box: Solid) -> tuple[Array, Literal["arm", "body"]] | None:
-    agent = team.agents[body.part]
+def _side_of(team: Team, body: Body, box: Solid) -> Array | None:
+    """Return the direction (3,) from the object in which a holder's body belongs, in the object's axes, or None."""
     if is_of_an_arm(team, body):
-        outward = _face(team, box, held_by(team, body))
-        return None if outward is None else (outward, "arm")
-    return None if agent.stance is None else (-agent.T_world_base[:3, 0], "body")
+        return _face(team, box, held_by(team, body))
+    agent = team.agents[body.part]
+    return None if agent.stance is None else np.asarray(-agent.T_world_base[:3, 0])
 
 
 def is_of_an_arm(team: Team, body: Body) -> bool:

@@ -1,28 +1,22 @@
 """Passing paths: where the object runs into what stands around, the same motion with it led past on each side.
 
-Where it runs into who holds it, a person's thighs or belly, it is led away from them, ahead of the feet.
-
 The shift is as large as the overlap asks for on that side, whole while they overlap, and ebbs away to both ends. The
 agents follow by inverse kinematics. What comes of it is far from optimal but passes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
-import numpy.typing as npt
 
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.separating_planes import WORLD
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.transfer import nearest_controls
-from liftopt.search.holder_sides import is_of_an_arm
 from liftopt.search.inverse_kinematics import FOLLOWING_ITERATIONS, InverseKinematics
 from liftopt.search.moves import quintic
 from liftopt.search.plane_choice import NEAR
-from liftopt.search.solid_distances import SolidDistances, gaps, solid_distances
+from liftopt.search.solid_distances import gaps, solid_distances
 from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Array
 
@@ -66,69 +60,28 @@ def passing_paths(
 
 def _shifts(problem: Problem, solids: TeamSolids, here: Array) -> list[Array]:
     """Return shifts (K, 3) of the object's path [m], the smallest first."""
-    sides = [*_past_what_stands(problem, solids, here), *_away_from_holders(problem, solids, here)]
-    sides.sort(key=lambda side: side[0])
-    return [shift for depth, shift in sides if depth < FARTHEST][:SIDES]
-
-
-def _past_what_stands(problem: Problem, solids: TeamSolids, here: Array) -> Iterator[tuple[float, Array]]:
-    """Give depths and shifts to each side of what stands around."""
     own = len(solids.team.agents)
     pairs = [
         p
         for p, (one, other) in enumerate(solids.ends)
         if solids.bodies[one].part == own and solids.bodies[other].part == WORLD and not solids.flat[other]
     ]
-    found = solid_distances(solids, problem, here, NEAR, np.array(pairs, dtype=np.int64))
+    among = np.array(pairs, dtype=np.int64)
+    found = solid_distances(solids, problem, here, NEAR, among)
+    sides: list[tuple[float, Array]] = []
+    phase = problem.mesh.phase
     for p in pairs:
-        inside = _inside(found.distance[:, p])
-        if not inside.any():
+        inside = np.flatnonzero(found.distance[:, p] < ROOM / 2)
+        inside = inside[(inside > 0) & (inside < len(phase) - 1)]
+        if not len(inside):
             continue
-        share = _while_inside(problem, inside)
+        first, last = phase[inside[0]], phase[inside[-1]]
+        rising, falling = np.minimum(phase / first, 1.0), np.minimum((1.0 - phase) / (1.0 - last), 1.0)
+        share = quintic(np.minimum(rising, falling))[:, None]
         standing = solids.solids[solids.ends[p, 1]].T_joint_solid[:3, :3]
         for direction in TO_SIDES @ standing.T:
-            depth = float(_depths(solids, found, p, direction)[inside].max())
-            yield depth, share[:, None] * depth * direction
-
-
-def _away_from_holders(problem: Problem, solids: TeamSolids, here: Array) -> Iterator[tuple[float, Array]]:
-    """Give depths and shifts away from who stands on soles and holds the object."""
-    own = len(solids.team.agents)
-    for part, agent in enumerate(solids.team.agents):
-        if agent.stance is None:
-            continue
-        pairs = [
-            p
-            for p, (one, other) in enumerate(solids.ends)
-            if solids.bodies[one].part == part
-            and solids.bodies[other].part == own
-            and not is_of_an_arm(solids.team, solids.bodies[one])
-        ]
-        found = solid_distances(solids, problem, here, NEAR, np.array(pairs, dtype=np.int64))
-        inside = {p: _inside(found.distance[:, p]) for p in pairs}
-        ahead = agent.T_world_base[:3, 0]
-        depths = [float(_depths(solids, found, p, -ahead)[at].max()) for p, at in inside.items() if at.any()]
-        if depths:
-            share = _while_inside(problem, np.any(list(inside.values()), axis=0))
-            yield max(depths), share[:, None] * max(depths) * ahead
-
-
-def _inside(distance: Array) -> npt.NDArray[np.bool_]:
-    """Return at which knots (K,), but for the ends, solids are nearer than they should pass."""
-    near = distance < ROOM / 2
-    near[[0, -1]] = False
-    return near
-
-
-def _while_inside(problem: Problem, inside: npt.NDArray[np.bool_]) -> Array:
-    """Return how much (K,) of a shift there is at each knot: all of it while it is inside."""
-    phase, at = problem.mesh.phase, np.flatnonzero(inside)
-    first, last = phase[at[0]], phase[at[-1]]
-    rising, falling = np.minimum(phase / first, 1.0), np.minimum((1.0 - phase) / (1.0 - last), 1.0)
-    return np.asarray(quintic(np.minimum(rising, falling)))
-
-
-def _depths(solids: TeamSolids, found: SolidDistances, p: int, direction: Array) -> Array:
-    """Return how far (K,) the first solid of a pair has to move along a direction, or the second against it [m]."""
-    along = np.tile(direction, (len(found.distance), 1, 1))
-    return np.asarray(ROOM - gaps(solids, found.points, along, np.array([p]))[:, 0])
+            along = np.tile(direction, (len(here), 1, 1))
+            depth = float(ROOM - gaps(solids, found.points, along, np.array([p]))[inside, 0].min())
+            sides.append((depth, share * depth * direction))
+    sides.sort(key=lambda side: side[0])
+    return [shift for depth, shift in sides if depth < FARTHEST][:SIDES]

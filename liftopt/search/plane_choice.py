@@ -33,7 +33,7 @@ FLIP, THROUGH = -0.1, 1e4
 # What it costs at a knot to pass on the other side of what stands around than the object: so much, times 1 - cosine.
 BESIDE = 2.0
 # And for who holds the object, on another side of it than where arms, legs and trunk belong.
-OFF_SIDE = {"arm": 20.0, "body": 2.0}
+OFF_SIDE = 20.0
 # Depth costs so much more at the ends where the task places the object, and it can hardly yield.
 FIXED = 100.0
 SAME_SIDE = 0.5  # cosine of the angle between directions that are on one side
@@ -216,7 +216,7 @@ def _off_side(solids: TeamSolids, found: SolidDistances, p: int, directions: Arr
     side = solids.sides[p]
     box = solids.ends[p, 0 if side.object_is_first else 1]
     normal = found.placements[:, box, :3, :3] @ side.normal
-    return np.asarray(OFF_SIDE[side.kind] * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
+    return np.asarray(OFF_SIDE * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
 
 
 def _is_placed(solids: TeamSolids, p: int) -> bool:

@@ -118,10 +118,17 @@ def robot_chain(
     path = description.joints_between(base, description.link(grasp_frame).name)
     if path is None:
         raise InputError(f"{source}: grasp_frame", grasp_frame, f"the base {base!r} does not carry this link")
-    held: dict[str, float] = {}
     moving = [joint for joint in path if _moves(joint, given, description)]
     if not moving:
         raise InputError(f"{source}: grasp_frame", grasp_frame, f"no joint moves between it and the base {base!r}")
+    with np.errstate(all="ignore"):  # masses that are no numbers are found later
+        return _assembled(description, base, grasp_frame, moving, given)
+
+
+def _assembled(
+    description: RobotDescription, base: str, grasp_frame: str, moving: list[RobotJoint], given: Mapping[str, float]
+) -> RobotChain:
+    held: dict[str, float] = {}
     below = {joint.child for joint in moving}
     base_body, base_links = _lumped(description, base, below, given, held)
     links, start, before = [], base, np.eye(4)
@@ -212,7 +219,9 @@ def _lumped(
     body, names, ahead = BodyInertia.zero(), [], [(link, np.eye(4))]
     while ahead:
         name, placement = ahead.pop()
-        body += description.link(name).body.transformed(placement[:3, :3], placement[:3, 3])
+        own = description.link(name).body
+        if own.mass != 0.0:  # moments of inertia without a mass are none
+            body += own.transformed(placement[:3, :3], placement[:3, 3])
         names.append(name)
         for joint in description.below(name):
             if joint.child not in stops:

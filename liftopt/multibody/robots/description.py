@@ -13,6 +13,7 @@ from liftopt.multibody.dh import BodyInertia
 from liftopt.types import Array
 
 ONE_AXIS = ("revolute", "continuous", "prismatic")
+LARGEST_NUMBER = 1e6  # in SI units: no robot has a larger one, and readers of results take none
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
 
 

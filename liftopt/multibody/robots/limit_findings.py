@@ -8,13 +8,12 @@ from math import degrees, isfinite
 from liftopt.errors import NO_VALUE
 from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.data_finding import DataFinding
-from liftopt.multibody.robots.description import RobotJoint
+from liftopt.multibody.robots.description import LARGEST_NUMBER, RobotJoint
 from liftopt.multibody.robots.joint_ranges import JointRange
 
 ENOUGH = 3  # joints from which one value for all of them looks like a placeholder
 LARGEST_EFFORT = 1000.0  # of a joint that turns [Nm]: the largest arms that work beside people have 450
 LARGEST_VELOCITY = 20.0  # [rad/s]: fast arms have 4 to 6
-LARGEST_NUMBER = 1e6  # of any limit: no joint has as much, and readers of results take no more
 WIDEST = 8.0 * 3.141592653589793  # [rad]: four turns
 
 

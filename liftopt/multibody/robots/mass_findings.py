@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from liftopt.errors import NO_VALUE
 from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.data_finding import DataFinding, Severity
+from liftopt.multibody.robots.description import LARGEST_NUMBER
 from liftopt.types import Array
 
 # Moments of a rigid body: the largest is at most the sum of the others; files round theirs.
@@ -19,6 +21,11 @@ SHEET = "take mass properties from the maker's data sheet or CAD model"
 
 def mass_findings(chain: RobotChain) -> Iterator[DataFinding]:
     """Give what is wrong; massless links that are one body with others are frames, and pass."""
+    for name in chain.base_links:
+        for found in _of_link(name, chain.description.link(name).body):
+            if found.severity == "refused":
+                fix = "it does not move, so its mass is left out with that of all that is one with the base"
+                yield replace(found, code="mass.base", severity="warned", fix=fix)
     broken = False
     for link in chain.links:
         for name in link.links:
@@ -34,15 +41,18 @@ def mass_findings(chain: RobotChain) -> Iterator[DataFinding]:
 
 def _of_link(name: str, body: BodyInertia) -> Iterator[DataFinding]:
     where = f"link {name}"
-    if not np.isfinite(body.mass) or body.mass < 0.0:
-        message = "must be a number of kg from zero on"
+    if not 0.0 <= body.mass <= LARGEST_NUMBER:
+        message = f"must be a number of kg from 0 to {LARGEST_NUMBER:g}"
         yield DataFinding("mass.value", "refused", f"{where}: mass", body.mass, message, SHEET)
     elif body.mass > 0.0 and not np.isfinite(body.com).all():
         message = "its centre of mass is no point"
         yield DataFinding("mass.centre", "refused", f"{where}: origin", NO_VALUE, message, SHEET)
-    elif body.mass > 0.0 and not np.isfinite(body.inertia).all():
-        message = "it has a mass, but moments of inertia are missing or no numbers"
+    elif body.mass > 0.0 and not (np.abs(body.inertia) <= LARGEST_NUMBER).all():
+        message = "it has a mass, but moments of inertia are missing, no numbers, or beyond all"
         yield DataFinding("inertia.value", "refused", f"{where}: inertia", NO_VALUE, message, SHEET)
+    elif body.mass == 0.0 and np.any(body.inertia != 0.0):
+        message = "it has moments of inertia and no mass: they are left out"
+        yield DataFinding("inertia.massless", "warned", f"{where}: inertia", NO_VALUE, message, SHEET)
     elif body.mass > 0.0:
         moments = principal_moments(body)
         excess = moments[2] - moments[0] - moments[1]

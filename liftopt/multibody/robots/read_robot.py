@@ -41,7 +41,7 @@ def read_robot(source: str | Path, *, arguments: Mapping[str, str] = NOTHING) ->
     Raises:
         InputError: the file cannot be read, is no URDF, or a package that reads it is not installed.
     """
-    if isinstance(source, str) and source.lstrip().startswith("<"):
+    if isinstance(source, str) and (source.lstrip().startswith("<") or "\n" in source):
         return _described(source, TEXT, None)
     path = Path(source)
     text = _text(path)
@@ -111,7 +111,8 @@ def _body(inertial: Any, element: Element) -> BodyInertia:
         inertia = np.full((3, 3), np.nan if mass != 0.0 else 0.0)
     else:
         inertia = np.asarray(inertial.inertia, dtype=np.float64)
-    return BodyInertia(mass, np.zeros(3), inertia).transformed(origin[:3, :3], origin[:3, 3])
+    with np.errstate(all="ignore"):  # endless ones are judged later
+        return BodyInertia(mass, np.zeros(3), inertia).transformed(origin[:3, :3], origin[:3, 3])
 
 
 def _joint(joint: Any, source: str) -> RobotJoint:

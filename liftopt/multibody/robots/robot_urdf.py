@@ -13,7 +13,9 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.errors import InputError
+from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.chain import ChainLink, RobotChain
+from liftopt.multibody.robots.description import LARGEST_NUMBER
 from liftopt.multibody.robots.sawyer_shapes import tool_shapes
 from liftopt.multibody.robots.tool import tool_body
 from liftopt.multibody.shapes import Capsule, Colour, Shape
@@ -55,14 +57,14 @@ def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length
             ends_of_range.lower, ends_of_range.upper, float(link.joint.effort or 0.0), float(link.joint.velocity or 0.0)
         )
         body = link.body.transformed(back[:3, :3], np.zeros(3))
-        shapes = tuple(_tube(f"{own}_tube", (back @ end)[:3, 3], radius))
+        shapes = tuple(_tube(_plain(link.joint.child), (back @ end)[:3, 3], radius))
         kind = "prismatic" if link.joint.kind == "prismatic" else "revolute"
         placement = before @ link.placement @ turn
         moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, shapes))  # type: ignore[arg-type]
         parent, before = own, back
-    stand = tuple(_tube(f"{base}_tube", chain.links[0].placement[:3, 3], radius))
+    stand = tuple(_tube("stand", chain.links[0].placement[:3, 3], radius))
     flange = before @ chain.T_last_grasp
-    fixed = [FixedLink(base, "world", T_world_base, chain.base_body, stand)]
+    fixed = [FixedLink(base, "world", T_world_base, _sound(chain.base_body), stand)]
     if tool_length or tool_mass:
         fixed.append(
             FixedLink(f"{name}_tool", parent, flange, tool_body(tool_length, tool_mass), tool_shapes(tool_length))
@@ -73,12 +75,18 @@ def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length
     return urdf_text(tree_robot(name, moving, fixed))
 
 
+def _sound(body: BodyInertia) -> BodyInertia:
+    """Return a body that does not move, or none in its place where its mass properties are no numbers."""
+    numbers = np.array([body.mass, *body.com, *body.inertia.ravel()])
+    return body if (np.abs(numbers) <= LARGEST_NUMBER).all() else BodyInertia.zero()
+
+
 def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotChain) -> list[str]:
     """Return names as liftopt's URDFs have them; one that is taken, by a joint for instance, says that it is a link."""
     names: list[str] = []
     used = set(taken)
     for one in own:
-        name = f"{agent}_{re.sub(r'[^A-Za-z0-9_.+-]', '_', one)}"[:LONGEST_NAME]
+        name = f"{agent}_{_plain(one)}"[:LONGEST_NAME]
         name = f"{name}_link" if name in used else name
         if name in used or f"{name}_fixed" in used:
             raise InputError(
@@ -87,6 +95,11 @@ def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotCha
         used.add(name)
         names.append(name)
     return names
+
+
+def _plain(name: str) -> str:
+    """Return a name without the characters that liftopt's URDFs do not have."""
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", name)[:LONGEST_NAME]
 
 
 def _turned(link: ChainLink) -> Array:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from math import isfinite
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.multibody.robots.description import KINDS
+from liftopt.multibody.robots.description import KINDS, LARGEST_NUMBER
 
 JUDGED_LATER = ("mass", "inertia", "limit", "safety_controller")  # a number that is none is a finding there
 LARGEST = 20_000_000  # characters; the largest public ones have some 500 000
@@ -56,17 +55,18 @@ def _check_numbers(element: Element, source: str) -> None:
     for inner in element.iter():
         for name, count in NUMBERS.get(inner.tag, {}).items():
             value = inner.get(name)
-            if value is not None and not _are_numbers(value, count, finite=inner.tag not in JUDGED_LATER):
+            if value is not None and not _are_numbers(value, count, any_size=inner.tag in JUDGED_LATER):
                 must = "a number" if count == 1 else f"{count} numbers"
-                raise InputError(f"{place}: {inner.tag} {name}", value, f"must be {must}")
+                within = "" if inner.tag in JUDGED_LATER else f" within {LARGEST_NUMBER:g}"
+                raise InputError(f"{place}: {inner.tag} {name}", value, f"must be {must}{within}")
 
 
-def _are_numbers(text: str, count: int, *, finite: bool) -> bool:
+def _are_numbers(text: str, count: int, *, any_size: bool) -> bool:
     try:
         numbers = [float(word) for word in text.split()]
     except ValueError:
         return False
-    return len(numbers) == count and (not finite or all(map(isfinite, numbers)))
+    return len(numbers) == count and (any_size or all(abs(number) <= LARGEST_NUMBER for number in numbers))
 
 
 def _check_tree(robot: Element, source: str) -> None:

@@ -22,6 +22,13 @@ FAULTS = {
     "zero mass inside": ([('<mass value="3.0"/>', '<mass value="0"/>')], "mass.zero", "warned", "link l2: mass"),
     "negative mass": ([('<mass value="3.0"/>', '<mass value="-3"/>')], "mass.value", "refused", "link l2: mass"),
     "mass of no number": ([('<mass value="3.0"/>', '<mass value="nan"/>')], "mass.value", "refused", "link l2: mass"),
+    "mass beyond all": ([('<mass value="3.0"/>', '<mass value="1e300"/>')], "mass.value", "refused", "link l2: mass"),
+    "endless mass": ([('<mass value="3.0"/>', '<mass value="inf"/>')], "mass.value", "refused", "link l2: mass"),
+    "base of no mass that is one": (
+        [('<link name="base"/>', '<link name="base"><inertial><mass value="2"/></inertial></link>')],
+        "mass.base", "warned", "link base: inertia",
+    ),
+    "inertia without mass": ([('<mass value="0.1"/>', "")], "inertia.massless", "warned", "link finger: inertia"),
     "no inertia": ([('ixx="0.022"', "")], "inertia.value", "refused", "link l2: inertia"),
     "negative moment": ([('ixx="0.022"', 'ixx="-0.01"')], "inertia.positive", "refused", "link l2: principal moments"),
     "no body has it": ([('ixx="0.022"', 'ixx="0.2"')], "inertia.triangle", "warned", "link l2: principal moments"),

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from pathlib import Path
+from random import Random
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 pytest.importorskip("yourdfpy")
@@ -12,6 +16,8 @@ pytest.importorskip("yourdfpy")
 from liftopt.errors import InputError
 from liftopt.multibody.robots.package_files import file_of
 from liftopt.multibody.robots.read_robot import read_robot
+from liftopt.multibody.robots.robot_agent import robot_agent
+from liftopt.storage.urdf_check import check_urdf
 
 
 def test_links_and_joints_are_those_of_the_text(arm):
@@ -37,7 +43,7 @@ def test_links_and_joints_are_those_of_the_text(arm):
         (('mass value="3.0"', 'mass value="3,0"'), r"link l2: mass value = '3,0': must be a number"),
         (('axis xyz="1 0 0"', 'axis xyz="0 0 0"'), r"axis = \[0.0, 0.0, 0.0\]: must be a direction"),
         (('xyz="0 0 0.3"', 'xyz="0 0.3"'), "must be 3 numbers"),
-        (('xyz="0 0 0.3"', 'xyz="0 0 nan"'), "joint j1: origin xyz = '0 0 nan': must be 3 numbers"),
+        (('xyz="0 0 0.3"', 'xyz="0 0 nan"'), "joint j1: origin xyz = '0 0 nan': must be 3 numbers within 1e\\+06"),
         (('<parent link="l3"/>', '<parent link="l9"/>'), "joint j4: parent = 'l9'"),
         (('<parent link="base"/>', '<parent link="l3"/>'), "in a loop"),
         (('joint name="j2"', 'joint name="j1"'), "2 of its joints have this name"),
@@ -103,3 +109,46 @@ def test_xacro_is_expanded_with_its_arguments_and_packages(arm, tmp_path: Path):
     (folder / "part.xacro").write_text(text.replace("$(arg mass)", "${nothing}"))
     with pytest.raises(InputError, match=r"xacro cannot expand it.*nothing"):
         read_robot(folder / "arm.urdf.xacro")
+
+
+ODD = ("", "nan", "inf", "-1", "0", "1e400", "1e308", "abc", "0 0 0", "base")
+
+
+@pytest.mark.parametrize("package", ["yourdfpy", "xacro"])
+def test_a_package_that_is_missing_is_named_with_how_to_install_it(arm, package, tmp_path, monkeypatch):
+    (tmp_path / "arm.xacro").write_text(arm())
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(InputError, match=rf"{package}.*pip install \"liftopt\[robots\]\""):
+        read_robot(arm() if package == "yourdfpy" else tmp_path / "arm.xacro")
+
+
+def _spoilt(text: str, random: Random) -> str:
+    """Return a text with an attribute changed or lost, an element lost or doubled, or some characters cut out."""
+    pattern, put = random.choice((
+        (r'"[^"]*"', '"' + random.choice(ODD) + '"'),
+        (r' \w+="[^"]*"', ""),
+        (r"<\w+[^<>]*/>", random.choice(("", r"\g<0>\g<0>"))),
+        (r'type="revolute"', f'type="{random.choice(("floating", "continuous", "prismatic", "fixed", "ball"))}"'),
+        (r"(?s).{1,30}", ""),
+    ))  # fmt: skip
+    found = random.choice(list(re.finditer(pattern, text)))
+    return text[: found.start()] + found.expand(put) + text[found.end() :]
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_spoilt_file_is_refused_in_one_line_or_gives_a_model_of_numbers(arm):
+    random, outcomes = Random(5), {"refused": 0, "taken": 0}
+    for _ in range(300):
+        text = arm()
+        for _ in range(random.randint(1, 3)):
+            text = _spoilt(text, random)
+        try:
+            agent = robot_agent(read_robot(text), name="robot", T_world_base=np.eye(4))
+        except InputError as error:
+            assert "\n" not in str(error)
+            outcomes["refused"] += 1
+            continue
+        check_urdf(agent.urdf)
+        assert np.isfinite(pin.crba(agent.model, agent.model.createData(), agent.posture)).all()
+        outcomes["taken"] += 1
+    assert min(outcomes.values()) > 30, outcomes

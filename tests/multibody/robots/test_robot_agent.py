@@ -12,6 +12,7 @@ from liftopt.multibody.robots.chain import robot_chain
 from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.read_robot import read_robot
 from liftopt.multibody.robots.robot_agent import robot_agent
+from liftopt.multibody.solids import solids_of
 from liftopt.storage.urdf_check import check_urdf
 
 SHARE = share_folder()
@@ -101,6 +102,12 @@ def test_a_tool_extends_the_grasp_frame_along_its_z_axis(arm):
     total = [sum(inertia.mass for inertia in list(agent.model.inertias)[1:]) for agent in (bare, tooled)]
     assert total[1] - total[0] == pytest.approx(1.5, abs=1e-12)
     check_urdf(tooled.urdf)
+
+
+def test_shapes_become_solids_whose_names_can_be_read(arm):
+    agent = robot_agent(read_robot(arm()), name="ann", T_world_base=np.eye(4), tool_length=0.2)
+    told = [solid.told for solid in solids_of(agent)]
+    assert told == ["l1 of ann", "l2 of ann", "l3 of ann", "l4 of ann", "stand of ann", "gripper of ann"]
 
 
 def test_names_never_clash_between_two_robots_or_a_link_and_a_joint(arm):
