@@ -9,16 +9,14 @@ import numpy as np
 from liftopt.assessment.who import Who
 from liftopt.ergonomics.lift import model_of
 from liftopt.multibody.agent import Agent
-from liftopt.multibody.person.stance import FRICTION_SOURCE, FRONT_SOURCE
+from liftopt.multibody.person.stance import FRICTION_SOURCE, FRONT_SOURCE, SWAY
 from liftopt.multibody.standing import ground_in_base, pressure_in_base, support_margin
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.finding import CAUTION, INFO, PERSON, Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 
-# A centre of pressure nearer than this to the edge of the support leaves nothing for a sway, which in quiet standing
-# takes it about so far [m]; chosen for this model.
-NEAR_EDGE = 0.01
+NEAR_EDGE = SWAY / 2.0  # [m]: between knots less than this is left of the room for a sway
 NEAR_SLIP = 0.9  # share of friction from which a caution is due
 SIDES = ("heels", "balls of the feet", "outer edge of a foot")
 

@@ -2,9 +2,9 @@
 
 The conditions are linear in the force and moment of the ground about the feet's origin, in the axes of the base: the
 force lies in the pyramid that is inscribed in the friction cone about z, and the centre of pressure
-(-moment_y / force_z, moment_x / force_z) in the rectangle around both soles. The moment about z is within what friction
-holds of a pressure that is even over a disc as wide as that rectangle, two thirds of ``friction * force * radius``;
-that limit stands apart from the pyramid's.
+(-moment_y / force_z, moment_x / force_z) in the rectangle around both soles, by the sway within it. The moment about z
+is within what friction holds of a pressure that is even over a disc as wide as that rectangle, two thirds of
+``friction * force * radius``; that limit stands apart from the pyramid's.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ _PAIR = np.array([-1.0, 1.0])
 def sole_rows(stance: Stance) -> tuple[PushRows, PushRows]:
     """Return the rows of all that the ground does, friction [N] and pressure [Nm]; labels say where the feet slip."""
     back, ahead, aside = stance.support
+    tips = np.array([-back, ahead, aside, aside]) - stance.sway
     pyramid = np.full(4, stance.friction / np.sqrt(2.0))
     turn = 2.0 / 3.0 * stance.friction * aside
     return (
@@ -33,7 +34,7 @@ def sole_rows(stance: Stance) -> tuple[PushRows, PushRows]:
             ("over the heels", "over the toes", "to the left", "to the right", "turn left", "turn right"),
             np.array([4, 4, 3, 3, 5, 5]),
             np.tile(_PAIR, 3),
-            np.array([-back, ahead, aside, aside, turn, turn]),
+            np.array([*tips, turn, turn]),
         ),
     )
 

@@ -129,12 +129,14 @@ class Stance:
         friction: coefficient between soles and floor.
         mass: of what rests on the floor and does not move, the feet [kg].
         p_base_com: (3,) its centre of mass [m].
+        sway: how far within the rectangle around both soles a plan keeps the centre of pressure [m].
     """
 
     soles: tuple[tuple[float, float, float], ...]
     friction: float
     mass: float
     p_base_com: Array
+    sway: float = 0.0
 
     @property
     def support(self) -> tuple[float, float, float]:

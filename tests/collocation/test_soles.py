@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,13 @@ def test_the_centre_of_pressure_stays_within_it(x: float, y: float, tips: str | 
     assert [label for label, value in zip(pressure.labels, room, strict=True) if value < 0.0] == (
         [tips] if tips else []
     )
+
+
+def test_a_sway_keeps_it_off_the_edges() -> None:
+    _, pressure = sole_rows(replace(STANCE, sway=0.02))
+    for x, y in ((-0.051, 0.0), (0.111, 0.0), (0.0, 0.131), (0.0, -0.131)):
+        assert pressure.room(_ground((0.0, 0.0, 700.0), x, y))[0].min() < 0.0
+        assert pressure.room(_ground((0.0, 0.0, 700.0), 0.97 * x, 0.97 * y))[0].min() > 0.0
 
 
 def test_friction_holds_within_the_pyramid_in_the_cone() -> None:

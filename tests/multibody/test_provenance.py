@@ -51,6 +51,7 @@ def test_states_the_numbers_of_the_whole_person():
     np.testing.assert_allclose(neutral - first, agent.comfort.room_lower)
     np.testing.assert_allclose(last - neutral, agent.comfort.room_upper)
     assert np.all(agent.comfort.room_lower > 0.0) and np.all(agent.comfort.room_upper > 0.0)
-    assert groups["stance"] == [*agent.stance.soles[0], agent.stance.friction]
+    assert groups["stance"] == [*agent.stance.soles[0], agent.stance.sway, agent.stance.friction]
+    np.testing.assert_allclose(np.radians(groups["lean"]), [agent.lean.room, agent.lean.most])
     assert sum(item.value for item in stated if item.name.endswith(" mass")) == pytest.approx(68.0, abs=1e-9)
     assert all(item.source.citation and item.source.confidence for item in stated)

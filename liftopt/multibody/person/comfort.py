@@ -80,8 +80,8 @@ WHOLE_COMFORTS: tuple[JointComfort, ...] = (
 )
 
 
-# Angles of the trunk from the vertical [deg]; the largest is chosen for this model, beyond what a lift asks for.
-LEAN_ROOM, LEAN_MOST = 60.0, 135.0
+LEAN_ROOM, LEAN_MOST = 60.0, 135.0  # angles of the trunk from the vertical [deg]
+LEAN_MOST_SOURCE = Source("beyond what a lift asks for; chosen for this model", "estimate")
 
 
 def human_lean(joint: str) -> Lean:

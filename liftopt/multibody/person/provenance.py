@@ -11,10 +11,28 @@ from liftopt.multibody.agent import Comfort
 from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.person.anthropometry import JOINT_SOURCES, LINK_SOURCES, landmarks, link_lengths
 from liftopt.multibody.person.bodies import BODY_SOURCE, human_bodies, whole_bodies
-from liftopt.multibody.person.comfort import COMFORTS, WHOLE_COMFORTS, JointComfort, human_comfort, whole_comfort
+from liftopt.multibody.person.comfort import (
+    COMFORTS,
+    LEAN_MOST,
+    LEAN_MOST_SOURCE,
+    LEAN_ROOM,
+    TRUNK_BANDS,
+    WHOLE_COMFORTS,
+    JointComfort,
+    human_comfort,
+    whole_comfort,
+)
 from liftopt.multibody.person.leg_strength import LegStrength
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE, JointRange
-from liftopt.multibody.person.stance import ASIDE_SOURCE, BACK_SOURCE, FRICTION_SOURCE, FRONT_SOURCE, human_stance
+from liftopt.multibody.person.stance import (
+    ASIDE_SOURCE,
+    BACK_SOURCE,
+    FRICTION_SOURCE,
+    FRONT_SOURCE,
+    SWAY,
+    SWAY_SOURCE,
+    human_stance,
+)
 from liftopt.multibody.person.strength import STRENGTHS, Strength
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.person.whole_joints import WHOLE_RANGES, WHOLE_STRENGTHS
@@ -57,6 +75,8 @@ def whole_quantities(subject: Subject) -> tuple[Quantity, ...]:
         *_ranges(WHOLE_RANGES),
         *_comforts(WHOLE_COMFORTS, whole_comfort()),
         *_strengths(WHOLE_STRENGTHS, subject),
+        Quantity("lean", "trunk from the vertical, at ease to", LEAN_ROOM, "deg", TRUNK_BANDS),
+        Quantity("lean", "trunk from the vertical, at most", LEAN_MOST, "deg", LEAN_MOST_SOURCE),
     )
 
 
@@ -77,6 +97,7 @@ def _stance(subject: Subject) -> list[Quantity]:
         Quantity("stance", "soles from", back, "m", BACK_SOURCE),
         Quantity("stance", "soles to", front, "m", FRONT_SOURCE),
         Quantity("stance", "soles to either side", aside, "m", ASIDE_SOURCE),
+        Quantity("stance", "room left for sway", SWAY, "m", SWAY_SOURCE),
         Quantity("stance", "friction", stance.friction, "", FRICTION_SOURCE),
     ]
 

@@ -19,6 +19,9 @@ ASIDE_SOURCE = Source(
     "outer edges of two parallel feet below the hip joints (ANSUR II foot breadth; hip joints chosen for this model)",
     "estimate",
 )
+# A plan leaves room for what a body sways by even in quiet standing.
+SWAY = 0.01
+SWAY_SOURCE = Source("about what the centre of pressure wanders in quiet standing; chosen for this model", "estimate")
 FRICTION = 0.5
 FRICTION_SOURCE = Source(
     "Miller (1983), J Safety Res 14:77-82: a coefficient of friction of 0.5 is a reasonable standard for level floors",
@@ -36,4 +39,4 @@ def human_stance(subject: Subject) -> Stance:
     ball = back + dimension(subject, "balloffootlength")
     aside = HIP_JOINT_SPREAD * dimension(subject, "hipbreadth") + dimension(subject, "footbreadthhorizontal") / 2.0
     feet = whole_bodies(subject)["feet"]
-    return Stance(soles=((back, ball, aside),), friction=FRICTION, mass=feet.mass, p_base_com=feet.com)
+    return Stance(soles=((back, ball, aside),), friction=FRICTION, mass=feet.mass, p_base_com=feet.com, sway=SWAY)
