@@ -20,7 +20,7 @@ from liftopt.scenario.task import GraspPlace, ObjectPlace
 
 # How far a hand underneath reaches in from the edge, and a handle is below the top [m]; of a small box a quarter of it.
 # Both are choices of this model.
-UNDERNEATH, BELOW_TOP = 0.10, 0.05
+UNDERNEATH, BELOW_TOP = 0.05, 0.05
 SIDE_OF: dict[Hand | None, float] = {"right": -1.0, "left": 1.0}
 
 
