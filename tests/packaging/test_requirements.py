@@ -125,8 +125,9 @@ def test_a_package_has_the_same_bounds_wherever_it_is_asked_for() -> None:
     for name, entries in {"the build": BUILD, **EXTRAS}.items():
         for package in entries.keys() & PLAIN.keys():
             assert entries[package] == PLAIN[package], f"{package} in {name}"
-    for package in EXTRAS["test"].keys() & (EXTRAS["lab"] | EXTRAS["crosscheck"]).keys():
-        assert EXTRAS["test"][package] == (EXTRAS["lab"] | EXTRAS["crosscheck"])[package], package
+    others = EXTRAS["lab"] | EXTRAS["crosscheck"] | EXTRAS["robots"]
+    for package in EXTRAS["test"].keys() & others.keys():
+        assert EXTRAS["test"][package] == others[package], package
 
 
 def test_the_wheel_of_pinocchio_casadi_is_built_from_the_same_versions() -> None:
@@ -138,15 +139,17 @@ def test_the_wheel_of_pinocchio_casadi_is_built_from_the_same_versions() -> None
 
 def test_everything_imported_is_asked_for_and_everything_asked_for_is_imported() -> None:
     found = {file: distributions(imported(file)) for file in (ROOT / "liftopt").rglob("*.py")}
-    offered = PLAIN.keys() | EXTRAS["lab"].keys() | EXTRAS["crosscheck"].keys()
+    offered = PLAIN.keys() | EXTRAS["lab"].keys() | EXTRAS["crosscheck"].keys() | EXTRAS["robots"].keys()
     assert {str(file): names - offered for file, names in found.items() if names - offered} == {}
     assert PLAIN.keys() - set().union(*found.values()) == set()
 
 
-def test_only_laboratory_and_crosscheck_import_what_a_plain_install_has_not() -> None:
+def test_only_laboratory_crosscheck_and_robots_import_what_a_plain_install_has_not() -> None:
     for file in (ROOT / "liftopt").rglob("*.py"):
-        if file.relative_to(ROOT / "liftopt").parts[0] not in ("lab", "crosscheck"):
-            assert distributions(imported(file)) - PLAIN.keys() == set(), file
+        room, *inner = file.relative_to(ROOT / "liftopt").parts
+        if room not in ("lab", "crosscheck"):
+            more = EXTRAS["robots"].keys() if (room, inner[0]) == ("multibody", "robots") else set()
+            assert distributions(imported(file)) - PLAIN.keys() - more == set(), file
 
 
 def test_the_locked_versions_are_within_the_bounds() -> None:
