@@ -54,7 +54,7 @@ def footing(stance: Stance, ground: Any) -> list[Any]:
     """Return what the soles leave of each of their limits, all of them >= 0, in sizes near one.
 
     Of the friction that keeps them from sliding, by the pyramid inscribed in its cone; of the way of the centre of
-    pressure to the heels, the toes and both sides; and of what friction holds about z of a pressure that is even over
+    pressure to the heels, the toes and both sides, less the sway; and of what friction holds about z of a pressure that is even over
     a disc as wide as both soles.
 
     Args:
@@ -68,9 +68,10 @@ def footing(stance: Stance, ground: Any) -> list[Any]:
     back, ahead, aside = stance.support
     held = stance.friction / np.sqrt(2) * push
     left = _within([(push_x, held), (push_y, held)], FOOT_FORCE_UNIT)
-    left += [(-about_y - back * push) / FOOT_MOMENT_UNIT, (ahead * push + about_y) / FOOT_MOMENT_UNIT]
+    heels, toes, sides = -back - stance.sway, ahead - stance.sway, aside - stance.sway
+    left += [(-about_y + heels * push) / FOOT_MOMENT_UNIT, (toes * push + about_y) / FOOT_MOMENT_UNIT]
     return left + _within(
-        [(about_x, aside * push), (about_z, 2 / 3 * stance.friction * aside * push)], FOOT_MOMENT_UNIT
+        [(about_x, sides * push), (about_z, 2 / 3 * stance.friction * aside * push)], FOOT_MOMENT_UNIT
     )
 
 
