@@ -54,8 +54,8 @@ def footing(stance: Stance, ground: Any) -> list[Any]:
     """Return what the soles leave of each of their limits, all of them >= 0, in sizes near one.
 
     Of the friction that keeps them from sliding, by the pyramid inscribed in its cone; of the way of the centre of
-    pressure to the heels, the toes and both sides, less the sway; and of what friction holds about z of a pressure that is even over
-    a disc as wide as both soles.
+    pressure to the heels, the toes and both sides, less the sway; and of what friction holds about z of a pressure that
+    is even over a disc as wide as both soles.
 
     Args:
         stance: how it stands.
