@@ -9,6 +9,7 @@ from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.outputs import AgentOutputs, outputs_of
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.leaning import up_in_link
 from liftopt.multibody.standing import rooted
 from liftopt.multibody.trajectory import attitude, bearing, cross, mirrored, turned
 from liftopt.types import Array
@@ -115,8 +116,7 @@ def _lean(agent: Agent, model: pin.Model, q: Array, slopes: Array) -> tuple[Arra
     """Return 1 - cos of the trunk's angle from the vertical (K, 1), and its slopes (K, 1, n)."""
     assert agent.lean is not None
     trunk, data = model.getJointId(agent.lean.joint), model.createData()
-    pin.forwardKinematics(model, data, pin.neutral(model))
-    at_rest, up = data.oMi[trunk].rotation[2].copy(), np.zeros((len(q), 3))
+    at_rest, up = up_in_link(model, trunk), np.zeros((len(q), 3))
     for k in range(len(q)):
         pin.forwardKinematics(model, data, q[k])
         up[k] = data.oMi[trunk].rotation @ at_rest

@@ -9,6 +9,13 @@ from liftopt.multibody.agent import Agent
 from liftopt.types import Array
 
 
+def up_in_link(model: pin.Model, joint: int) -> Array:
+    """Return the direction (3,) in the link that a joint carries which is up where all joints are at zero."""
+    data = model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    return np.array(data.oMi[joint].rotation[2])
+
+
 def trunk_tilt(agent: Agent, q: Array) -> Array:
     """Return 1 - cos of the angle (K,) between the trunk and the vertical, from all joints (K, n) of the model.
 
@@ -18,8 +25,7 @@ def trunk_tilt(agent: Agent, q: Array) -> Array:
         raise ValueError(f"{agent.name} has no trunk that leans")
     model, data = agent.model, agent.model.createData()
     trunk = model.getJointId(agent.lean.joint)
-    pin.forwardKinematics(model, data, pin.neutral(model))
-    up = data.oMi[trunk].rotation[2].copy()
+    up = up_in_link(model, trunk)
     found = np.zeros(len(q))
     for k, posture in enumerate(q):
         pin.forwardKinematics(model, data, posture)

@@ -9,10 +9,11 @@ import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.anatomy import skeleton
+from liftopt.lab.mocap.assembled_lift import assembled_lift
 from liftopt.lab.mocap.c3d import read_c3d
 from liftopt.lab.mocap.filtering import angles_and_rates, low_pass
 from liftopt.lab.mocap.findings import findings
-from liftopt.lab.mocap.loads import Load, carried_object, lift_spans, plate_force, right_hand_force
+from liftopt.lab.mocap.loads import Load, carried_object, lift_spans, right_hand_force
 from liftopt.lab.mocap.map_file import AnyMap
 from liftopt.lab.mocap.marker_map import MarkerMap
 from liftopt.lab.mocap.outliers import Outlier, ShapeGroup, outlier_notes, without_outliers
@@ -98,36 +99,20 @@ def recorded_lift(
     )
     lifts, several = lift_spans(smooth.time, lifted)
     notes += several
-    return RecordedLift(
-        source=smooth.source,
-        rate=smooth.rate,
-        cutoff=cutoff,
-        subject=scaled.subject,
-        stature_estimated=scaled.estimated,
-        stature_by=scaled.stature_by,
-        lengths=scaled.lengths,
-        urdf=agent.urdf,
-        joint_names=trajectory.joint_names,
-        time=smooth.time,
-        q=q,
-        v=v,
-        a=a,
-        tau=trajectory.tau,
-        hand_position=trajectory.p_world_hold,
-        hand_force=force,
+    return assembled_lift(
+        taken,
+        smooth,
+        cutoff,
+        scaled,
+        scaled.lengths,
+        person,
+        motion,
+        trajectory,
+        lifted,
         force_from=force_from,
-        ground_force=trajectory.ground_force,
-        ground_moment=trajectory.ground_moment,
-        plate_force=plate_force(smooth, person.world),
-        markers=tuple(marker.label for marker in person.markers),
-        residual=motion.residual,
         elbow_flexion=found.elbow_flexion,
-        object_position=lifted.position if lifted else None,
-        object_quaternion=lifted.quaternion if lifted else None,
-        carried=lifts[0] if len(lifts) == 1 else None,
-        gaps=taken.gaps,
-        notes=tuple(notes),
         lifts=lifts,
+        notes=notes,
     )
 
 

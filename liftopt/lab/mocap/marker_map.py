@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
@@ -101,6 +101,24 @@ HOME: dict[str, str] = {
 TRACKED = ("trunk", "upper_arm", "forearm", "hand")
 
 
+def each_label_once(segments: Mapping[str, Sequence[str]]) -> dict[str, Labels]:
+    """Return the labels of every segment that has any, each once.
+
+    One marker may stand for two landmarks of its segment (the sacrum for both rear spines).
+    """
+    return {name: tuple(dict.fromkeys(labels)) for name, labels in segments.items() if labels}
+
+
+def refuse_shared_markers(segments: Mapping[str, Labels]) -> None:
+    """Raise InputError if a marker stands on two segments."""
+    where: dict[str, str] = {}
+    for segment, labels in segments.items():
+        for label in labels:
+            if label in where:
+                raise InputError(f"segments.{segment}", label, f"the marker already belongs to {where[label]}")
+            where[label] = segment
+
+
 class MarkerMap(Section):
     """The mapping of one marker set.
 
@@ -118,12 +136,7 @@ class MarkerMap(Section):
 
     @model_validator(mode="after")
     def _each_marker_once(self) -> MarkerMap:
-        where: dict[str, str] = {}
-        for segment, labels in self.by_segment().items():
-            for label in labels:
-                if label in where:
-                    raise InputError(f"segments.{segment}", label, f"the marker already belongs to {where[label]}")
-                where[label] = segment
+        refuse_shared_markers(self.by_segment())
         return self
 
     def landmark(self, name: str) -> Labels:
@@ -140,8 +153,7 @@ class MarkerMap(Section):
             result.setdefault(name, []).extend(getattr(self.segments, name))
         if result["scapula"]:
             result["scapula"].extend(self.landmark("acromion_right"))
-        # One marker may stand for two landmarks of its segment (the sacrum for both rear spines).
-        return {name: tuple(dict.fromkeys(labels)) for name, labels in result.items() if labels}
+        return each_label_once(result)
 
     def mapped(self) -> Labels:
         """Return all labels used, each once."""

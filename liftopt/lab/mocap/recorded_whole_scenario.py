@@ -57,7 +57,7 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
     grasps = {
         (f"human_{hand}" if len(holding) > 1 else "human"): {
             "place": _hold(hands[:, i], hand),
-            "position": [_round(x) for x in held[i]],
+            "position": [to_millimetres(x) for x in held[i]],
         }
         for i, hand in holding.items()
     }
@@ -65,11 +65,11 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
     tables: dict[str, Any] = {
         "schema": 2,
         "name": name,
-        "duration": _round(lift.carried[1] - lift.carried[0]),
+        "duration": to_millimetres(lift.carried[1] - lift.carried[0]),
         "agents": {
             "human": {
                 "kind": "person",
-                "stature": _round(person.stature),
+                "stature": to_millimetres(person.stature),
                 "mass": person.mass,
                 "sex": person.sex,
                 "body": "whole",
@@ -79,15 +79,15 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
         "object": {
             "name": "box",
             "mass": mass,
-            "depth": max(_round(depth), LEAST),
-            "width": max(_round(width), LEAST),
-            "height": max(_round(height), HEIGHT),
+            "depth": max(to_millimetres(depth), LEAST),
+            "width": max(to_millimetres(width), LEAST),
+            "height": max(to_millimetres(height), HEIGHT),
             "grasps": grasps,
         },
         "task": {
             "standing_distance": DISTANCE,
-            "start": {"x": _round(start[0]), "z": _round(start[2])},
-            "end": {"x": _round(end[0]), "z": _round(end[2])},
+            "start": {"x": to_millimetres(start[0]), "z": to_millimetres(start[2])},
+            "end": {"x": to_millimetres(end[0]), "z": to_millimetres(end[2])},
         },
     }
     return scenario_from_dict(tables)
@@ -117,5 +117,6 @@ def _hold(hands: Array, hand: Hand) -> str:
     return max(near, key=lambda hold: near[hold])
 
 
-def _round(value: float) -> float:
+def to_millimetres(value: float) -> float:
+    """Return a length [m] or a time [s] to three digits after the point."""
     return round(float(value), 3)

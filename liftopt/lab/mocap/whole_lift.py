@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from liftopt.lab.mocap.assembled_lift import assembled_lift
 from liftopt.lab.mocap.filtering import angles_and_rates, low_pass
-from liftopt.lab.mocap.loads import Load, both_hands_force, carried_object, lift_spans, plate_centre, plate_force
+from liftopt.lab.mocap.loads import Load, both_hands_force, carried_object, lift_spans, plate_centre
 from liftopt.lab.mocap.map_file import without_lacking
 from liftopt.lab.mocap.outliers import outlier_notes, without_outliers
 from liftopt.lab.mocap.recorded_lift import RecordedLift, RecordedWhole
@@ -59,36 +60,20 @@ def whole_lift(recording: Recording, mapping: WholeMap, load: Load, cutoff: floa
     notes = [*smooth.notes, *lacking, *outlier_notes(smooth, taken.outliers), *lost, *several]
     pressure = trajectory.centre_of_pressure
     notes += whole_findings(taken, found, scaled, person, motion, trajectory, mapping)
-    return RecordedLift(
-        source=smooth.source,
-        rate=smooth.rate,
-        cutoff=cutoff,
-        subject=scaled.subject,
-        stature_estimated=scaled.estimated,
-        stature_by=scaled.stature_by,
-        lengths=scaled.lengths.links,
-        urdf=agent.urdf,
-        joint_names=trajectory.joint_names,
-        time=smooth.time,
-        q=q,
-        v=v,
-        a=a,
-        tau=trajectory.tau,
-        hand_position=trajectory.p_world_hold,
-        hand_force=trajectory.load,
+    return assembled_lift(
+        taken,
+        smooth,
+        cutoff,
+        scaled,
+        scaled.lengths.links,
+        person,
+        motion,
+        trajectory,
+        lifted,
         force_from=force_from,
-        ground_force=trajectory.ground_force,
-        ground_moment=trajectory.ground_moment,
-        plate_force=plate_force(smooth, person.world),
-        markers=tuple(marker.label for marker in person.markers),
-        residual=motion.residual,
         elbow_flexion=found.elbow_flexion[:, 0],
-        object_position=lifted.position if lifted else None,
-        object_quaternion=lifted.quaternion if lifted else None,
-        carried=lifts[0] if len(lifts) == 1 else None,
-        gaps=taken.gaps,
-        notes=tuple(notes),
         lifts=lifts,
+        notes=notes,
         whole=RecordedWhole(
             grasp_position=trajectory.grasp_position,
             grasp_force=trajectory.grasp_force,

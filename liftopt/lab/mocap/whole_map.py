@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import entry
 from liftopt.files.section import Section
-from liftopt.lab.mocap.marker_map import Axis, Cluster, Labels, Person, Unit
+from liftopt.lab.mocap.marker_map import Axis, Cluster, Labels, Person, Unit, each_label_once, refuse_shared_markers
 from liftopt.lab.mocap.outliers import ShapeGroup
 
 SIDES = ("right", "left")
@@ -147,12 +147,7 @@ class WholeMap(Section):
 
     @model_validator(mode="after")
     def _each_marker_once(self) -> WholeMap:
-        where: dict[str, str] = {}
-        for segment, labels in self.by_segment().items():
-            for label in labels:
-                if label in where:
-                    raise InputError(f"segments.{segment}", label, f"the marker already belongs to {where[label]}")
-                where[label] = segment
+        refuse_shared_markers(self.by_segment())
         return self
 
     def landmark(self, name: str, side: str = "") -> Labels:
@@ -173,8 +168,7 @@ class WholeMap(Section):
             for name, home in HOME.items():
                 own = [label for landmark in home for label in self.landmark(landmark, side)]
                 result[f"{side} {name.replace('_', ' ')}"] = own + list(getattr(getattr(self.segments, side), name))
-        # One marker may stand for two landmarks of its segment (the sacrum for both rear spines).
-        return {name: tuple(dict.fromkeys(labels)) for name, labels in result.items() if labels}
+        return each_label_once(result)
 
     def alone(self) -> Iterator[tuple[str, Labels]]:
         """Give the landmarks that move with no segment, by name: acromia and joint centres."""
