@@ -9,6 +9,7 @@ from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.robots.description import RobotDescription
 from liftopt.multibody.robots.examination import AMBIGUOUS, examined
 from liftopt.multibody.robots.given_limits import GivenLimits
+from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_urdf import robot_urdf
 from liftopt.multibody.robots.tool import UNTURNED
 from liftopt.multibody.robots.written_robot import written_robot
@@ -68,4 +69,11 @@ def robot_agent(
         tool_direction=tool_direction,
         tool_turn=tool_turn,
     )
-    return written_robot(text, name=name, posture=posture, joint_weights=joint_weights, sliding=sliding)
+    return written_robot(
+        text,
+        name=name,
+        posture=posture,
+        joint_weights=joint_weights,
+        sliding=sliding,
+        ahead=heading(T_world_base),
+    )

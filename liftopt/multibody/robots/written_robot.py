@@ -10,6 +10,7 @@ import pinocchio as pin
 
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent, Grasp, JointLimits
+from liftopt.multibody.robots.resting_posture import resting_posture
 from liftopt.multibody.robots.robot_urdf import own_joint
 from liftopt.multibody.urdf import load_model
 from liftopt.types import Array
@@ -24,15 +25,18 @@ def written_robot(
     posture: Mapping[str, float] | None = None,
     joint_weights: Mapping[str, float] | None = None,
     sliding: float = 1.0,
+    ahead: Array | None = None,
 ) -> Agent:
     """Return the agent of a URDF that ``robot_urdf`` wrote; its base is bolted down, it holds at ``<name>_grasp``.
 
     Args:
         text: of the URDF.
         name: that begins the names of its joints.
-        posture: comfortable positions of its joints by the robot's own names, by default the middle of their ranges.
+        posture: comfortable positions of its joints by the robot's own names.
         joint_weights: factors of joints' squared torques in the objective by those names, by default 1.
         sliding: that factor of joints that slide, beside their own.
+        ahead: (3,) which way is ahead, level, in the world, for joints of which ``posture`` says nothing: they are
+            where ``resting_posture`` finds them; without it, as nothing is to be searched, in the middle of their ranges.
 
     Raises:
         InputError: there is no such joint, or it cannot be there; keys are ``<name>.posture.<joint>`` and
@@ -46,13 +50,16 @@ def written_robot(
         tau_lower=-np.array(model.effortLimit),
         tau_upper=np.array(model.effortLimit),
     )
-    resting = (limits.q_lower + limits.q_upper) / 2.0
+    chosen = np.full(model.nq, np.nan)
     for i, value in _placed(model, name, "posture", posture or {}):
         low, high = limits.q_lower[i], limits.q_upper[i]
         if not low <= value <= high:
             joint = next(own for own in posture or {} if own_joint(name, own) == model.names[i + 1])
             raise InputError(f"{name}.posture.{joint}", value, f"must be from {low:.4g} to {high:.4g} rad or m")
-        resting[i] = value
+        chosen[i] = value
+    resting = np.where(np.isfinite(chosen), chosen, (limits.q_lower + limits.q_upper) / 2.0)
+    if ahead is not None and not np.isfinite(chosen).all():
+        resting = resting_posture(model, f"{name}_grasp", limits, ahead, chosen)
     return Agent(
         name=name,
         kind="robot",
