@@ -36,7 +36,7 @@ def written_robot(
         joint_weights: factors of joints' squared torques in the objective by those names, by default 1.
         sliding: that factor of joints that slide, beside their own.
         ahead: (3,) which way is ahead, level, in the world, for joints of which ``posture`` says nothing: they are
-            where ``resting_posture`` finds them; without it, as nothing is to be searched, in the middle of their ranges.
+            where ``resting_posture`` finds them; without it, for what needs no search, in the middle of their ranges.
 
     Raises:
         InputError: there is no such joint, or it cannot be there; keys are ``<name>.posture.<joint>`` and
