@@ -76,6 +76,8 @@ def written_robot(
 
 def with_joint_weights(agent: Agent, joint_weights: Mapping[str, float]) -> Agent:
     """Return an agent whose joints' squared torques have these factors, by the names without the agent's."""
+    if not joint_weights:
+        return agent
     return replace(agent, joint_weights=_weights(agent.reduced(), agent.name, joint_weights, 1.0))
 
 
