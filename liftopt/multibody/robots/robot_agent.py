@@ -66,6 +66,7 @@ def robot_agent(
         hands=(f"{name}_grasp",),
         limits=_limits(chain),
         posture=_posture(chain, dict(posture or {})),
+        shares_kernels=True,
     )
 
 
