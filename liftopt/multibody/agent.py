@@ -188,6 +188,8 @@ class Agent:
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
         joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
+        shares_kernels: whether it is a serial arm, simple, whose joints turn about or slide along their z axes, and has
+            what is generated for all of them with the same kinds of joints.
     """
 
     name: str
@@ -205,6 +207,7 @@ class Agent:
     stance: Stance | None = None
     lean: Lean | None = None
     joint_weights: Array | None = None
+    shares_kernels: bool = False
 
     @property
     def is_simple(self) -> bool:

@@ -16,6 +16,7 @@ from liftopt.errors import InputError
 from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.chain import ChainLink, RobotChain
 from liftopt.multibody.robots.description import LARGEST_NUMBER
+from liftopt.multibody.robots.mass_findings import ROUNDING, principal_moments
 from liftopt.multibody.robots.sawyer_shapes import tool_shapes
 from liftopt.multibody.robots.tool import UNTURNED, along, tool_body
 from liftopt.multibody.shapes import Capsule, Colour, Shape
@@ -87,9 +88,11 @@ def robot_urdf(
 
 
 def _sound(body: BodyInertia) -> BodyInertia:
-    """Return a body that does not move, or none in its place where its mass properties are no numbers."""
+    """Return a body that does not move, or none in its place where its mass properties are none of a body."""
     numbers = np.array([body.mass, *body.com, *body.inertia.ravel()])
-    return body if (np.abs(numbers) <= LARGEST_NUMBER).all() else BodyInertia.zero()
+    if not (np.abs(numbers) <= LARGEST_NUMBER).all() or body.mass < 0.0 or principal_moments(body)[0] < -ROUNDING:
+        return BodyInertia.zero()
+    return body
 
 
 def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotChain) -> list[str]:

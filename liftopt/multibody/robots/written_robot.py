@@ -70,6 +70,7 @@ def written_robot(
         hands=(f"{name}_grasp",),
         limits=limits,
         posture=resting,
+        shares_kernels=True,
         joint_weights=_weights(model, name, joint_weights or {}, sliding),
     )
 
