@@ -70,6 +70,7 @@ def robot_agent(
         hands=(f"{name}_grasp",),
         limits=own,
         posture=_posture(model, f"{name}_grasp", own, T_world_base, chosen),
+        shares_kernels=True,
     )
 
 
