@@ -3,7 +3,7 @@ Two robots alone
 ================
 
 Nobody need be a person. Two Sawyers stand opposite each other and lift a crate of 4 kg. No feet are there to count
-from: ``start`` and ``end`` say where the crate's own centre is. Then the one on the left is tired, and its torques weigh
+from: ``start`` and ``end`` say where the crate itself is. Then the one on the left is tired, and its torques weigh
 five times as much.
 """
 
