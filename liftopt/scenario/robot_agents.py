@@ -11,6 +11,7 @@ from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.chosen_robot import ChosenRobot, chosen_robot
+from liftopt.multibody.robots.examination import Examination, examined, refuse
 from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer import sawyer_agent
@@ -96,6 +97,24 @@ def chosen_of(robot: Robot, name: str) -> ChosenRobot:
         if error.key == "robot":  # the name is none that is known, and no file
             raise InputError(f"{name}.model", robot.model, error.allowed) from None
         raise
+
+
+def refuse_unusable(robot: Robot) -> None:
+    """Raise ``InputError`` where a robot cannot be read, or its data are such that it cannot lift."""
+    found = examination_of(robot, "robot")
+    refuse(found, found.chain.description.source)
+
+
+def examination_of(robot: Robot, name: str) -> Examination:
+    """Return what is noticed about the data of an agent's robot; it is read. Raises ``InputError`` as ``examined``."""
+    chosen = chosen_of(robot, name)
+    return examined(
+        chosen.description,
+        grasp_frame=chosen.grasp_frame,
+        base=chosen.base_link,
+        locked=chosen.locked,
+        limits=given_limits(robot),
+    )
 
 
 def given_limits(robot: Robot) -> dict[str, GivenLimits]:
