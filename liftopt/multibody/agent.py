@@ -214,8 +214,8 @@ class Agent:
 
     @property
     def pushes_at_a_point(self) -> bool:
-        """Whether it is simple, and its hold a force at a point and no more."""
-        return self.is_simple and all(grasp.is_point_contact for grasp in self.grasps)
+        """Whether it is simple, its hold a force at a point, and what is generated for it has room for no more."""
+        return self.is_simple and not self.shares_kernels and all(grasp.is_point_contact for grasp in self.grasps)
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
