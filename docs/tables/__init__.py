@@ -18,6 +18,7 @@ GALLERY = (
     "whole_person",
     "two_people",
     "two_robots",
+    "robots_alone",
 )
 
 

@@ -27,7 +27,7 @@ from liftopt.collocation.dynamics import Topology, object_functions
 from liftopt.collocation.problem import Team, kernel_requests
 from liftopt.collocation.standing_place import held_anywhere
 from liftopt.multibody.table import lifted_table
-from liftopt.scenario.agents import GRASPS
+from liftopt.scenario.agent_fields import GRASPS
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 from liftopt.search.team_solids import TeamSolids
