@@ -188,6 +188,9 @@ class Agent:
             share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
+        joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
+        shares_kernels: whether it is a serial arm, simple, whose joints turn about or slide along their z axes, and has
+            what is generated for all of them with the same kinds of joints.
     """
 
     name: str
@@ -204,6 +207,8 @@ class Agent:
     spine: Array | None = None
     stance: Stance | None = None
     lean: Lean | None = None
+    joint_weights: Array | None = None
+    shares_kernels: bool = False
 
     @property
     def is_simple(self) -> bool:
@@ -212,8 +217,8 @@ class Agent:
 
     @property
     def pushes_at_a_point(self) -> bool:
-        """Whether it is simple, and its hold a force at a point and no more."""
-        return self.is_simple and all(grasp.is_point_contact for grasp in self.grasps)
+        """Whether it is simple, its hold a force at a point, and what is generated for it has room for no more."""
+        return self.is_simple and not self.shares_kernels and all(grasp.is_point_contact for grasp in self.grasps)
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
