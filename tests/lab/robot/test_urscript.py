@@ -74,8 +74,11 @@ def test_a_program_that_is_none_is_noticed(controller: Any) -> None:
     """The check must be able to fail: a block without end, an unknown function, an argument that is none."""
     program = urscript(motion(0.008), 0.008, "lift")
     for sound, faulty in (
-        ("    end\n", ""), ("movej(start, a", "movex(start, a"), ("gain=gain", "gains=gain"), ("start = [", "start = ("),
-    ):  # fmt: skip
+        ("    end\n", ""),
+        ("movej(start, a", "movex(start, a"),
+        ("gain=gain", "gains=gain"),
+        ("start = [", "start = ("),
+    ):
         assert sound in program
         with pytest.raises((AssertionError, NameError, TypeError, SyntaxError)):
             controller.Controller(motion(0.008).position[0]).run(program.replace(sound, faulty, 1))
