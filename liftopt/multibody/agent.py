@@ -187,6 +187,7 @@ class Agent:
             share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
+        joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
     """
 
     name: str
@@ -203,6 +204,7 @@ class Agent:
     spine: Array | None = None
     stance: Stance | None = None
     lean: Lean | None = None
+    joint_weights: Array | None = None
 
     @property
     def is_simple(self) -> bool:

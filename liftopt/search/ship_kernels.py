@@ -21,7 +21,7 @@ from liftopt.collocation.codegen.simd_kernels import PROCESSORS, load_simd_kerne
 from liftopt.collocation.dynamics import Topology
 from liftopt.collocation.problem import Team, kernel_requests
 from liftopt.multibody.table import lifted_table
-from liftopt.scenario.agents import GRASPS
+from liftopt.scenario.agent_fields import GRASPS
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 from liftopt.search.team_solids import TeamSolids

@@ -9,10 +9,11 @@ import pytest
 from pydantic import ValidationError
 
 from liftopt.errors import InputError
-from liftopt.scenario.agents import Person, Pose, Robot, Tool
+from liftopt.scenario.agents import Person
 from liftopt.scenario.box import Box
 from liftopt.scenario.keys import changes_in
 from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.robot import Pose, Robot, Tool
 from liftopt.scenario.task import Lift
 
 DEFAULT = load_scenario()
