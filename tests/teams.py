@@ -77,7 +77,6 @@ TWO_WHOLE = SQUAT | {
 }
 
 
-
 def _with_arm(model: str, x: float, z: float, **more: Any) -> dict[str, Any]:
     """Return the lift of a person and a robot whose model is in example-robot-data."""
     arm = {"kind": "robot", "model": model, "base": {"x": x, "z": z}, "tool": {"length": 0.1, "mass": 0.5}}

@@ -17,6 +17,7 @@ from liftopt.commands.cli import main
 from liftopt.commands.exit_status import BAD_INPUT, DONE
 from liftopt.errors import InputError
 from liftopt.lab.comparison.experiment import experiment
+from liftopt.lab.comparison.plots import drawn_comparisons
 from liftopt.lab.robot.dry_run import BEFORE, DryRun, dry_run
 from liftopt.lab.robot.dry_run_summary import summarised, summary_text
 from liftopt.lab.robot.joint_map import JointMap
@@ -170,6 +171,12 @@ def test_a_lifting_column_is_dry_run_recorded_and_compared(
     np.testing.assert_allclose(record.q, truth, rtol=0, atol=2e-3)
     assert record.sent[-1] == pytest.approx(BEFORE) and record.told_by == "when the trajectory was sent"
     found = experiment(solution, robot=[record])
+    units = [
+        (one.unit, two.unit) for one, two in zip(found.group("robot_angle"), found.group("robot_torque"), strict=True)
+    ]
+    assert units == [("mm", "N"), *[("deg", "Nm")] * 7]
+    assert np.ptp(found.group("robot_angle")[0].predicted) < 350.0
+    assert {plot.name for plot, _ in drawn_comparisons(found)} == {"compared_robot_angles", "compared_robot_torques"}
     for one in found.group("robot_angle"):
         assert one.measures.correlation > 0.9 or np.ptp(one.predicted) < 1.0, one.name
     assert json.loads((out / "summary.json").read_text())["mode"] == "position"
