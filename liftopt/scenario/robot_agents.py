@@ -12,6 +12,7 @@ from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.chosen_robot import ChosenRobot, chosen_robot
+from liftopt.multibody.robots.examination import Examination, examined, refuse
 from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_agent import robot_agent
@@ -100,6 +101,24 @@ def chosen_of(robot: Robot, name: str) -> ChosenRobot:
         if error.key == "robot":  # the name is none that is known, and no file
             raise InputError(f"{name}.model", robot.model, error.allowed) from None
         raise
+
+
+def refuse_unusable(robot: Robot) -> None:
+    """Raise ``InputError`` where a robot cannot be read, or its data are such that it cannot lift."""
+    found = examination_of(robot, "robot")
+    refuse(found, found.chain.description.source)
+
+
+def examination_of(robot: Robot, name: str) -> Examination:
+    """Return what is noticed about the data of an agent's robot; it is read. Raises ``InputError`` as ``examined``."""
+    chosen = chosen_of(robot, name)
+    return examined(
+        chosen.description,
+        grasp_frame=chosen.grasp_frame,
+        base=chosen.base_link,
+        locked=chosen.locked,
+        limits=given_limits(robot),
+    )
 
 
 def given_limits(robot: Robot) -> dict[str, GivenLimits]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.robots.description import RobotDescription
-from liftopt.multibody.robots.examination import AMBIGUOUS, examined
+from liftopt.multibody.robots.examination import examined, refuse
 from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_urdf import robot_urdf
@@ -60,9 +60,7 @@ def robot_agent(
     checked_number(f"{name}.tool.length", tool_length, 0.0, 1.0, "m")
     checked_number(f"{name}.tool.mass", tool_mass, 0.0, 20.0, "kg")
     found = examined(description, grasp_frame=grasp_frame, base=base, locked=locked, limits=limits)
-    for finding in found.findings:
-        if finding.severity == "refused" or finding.code == AMBIGUOUS:
-            raise finding.refusal(description.source)
+    refuse(found, description.source)
     text = robot_urdf(
         found.chain,
         name,
