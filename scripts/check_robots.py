@@ -28,8 +28,10 @@ import tomli_w
 import liftopt as lo
 from liftopt.commands.cli import main as liftopt_command
 from liftopt.multibody.robots.catalogue import known_robots
+from liftopt.multibody.robots.examination import Examination, examined
+from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.scenario.robot import Robot
-from liftopt.scenario.robot_agents import examination_of
+from liftopt.scenario.robot_agents import chosen_of
 from liftopt.search.first_scenario import first_scenario
 from liftopt.solution.finding import Finding
 
@@ -131,9 +133,13 @@ def lifted(asked: Asked, out: Path, *, show: bool) -> Row:
     """Return what comes of a robot."""
     row, progress = Row(asked.name, asked.maker, asked.source), Compiling()
     try:
-        found = examination_of(Robot(**asked.entries), "robot")
+        found = _examined(Robot(**asked.entries))
         row.joints = len(found.chain.links)
         row.data = ", ".join(dict.fromkeys(one.code for one in found.findings if one.severity == "warned"))
+        if found.refused:
+            reasons = dict.fromkeys(one.code for one in found.refused)
+            row.outcome = f"refused: {', '.join(reasons)}"
+            return row
         path = out / f"{asked.name}.toml"
         tables = first_scenario(asked.entries, asked.name, progress)
         path.write_text(tomli_w.dumps(tables), encoding="utf-8")
@@ -157,6 +163,15 @@ def lifted(asked: Asked, out: Path, *, show: bool) -> Row:
         folder = solution.save(out / asked.name)
         row.shown = ", ".join(_shown(folder)) if show else ""
     return row
+
+
+def _examined(robot: Robot) -> Examination:
+    """Return what is noticed about a robot's data."""
+    chosen = chosen_of(robot, "robot")
+    limits = {joint: GivenLimits(**dict(own)) for joint, own in robot.limits.items()}
+    return examined(
+        chosen.description, grasp_frame=chosen.grasp_frame, base=chosen.base_link, locked=chosen.locked, limits=limits
+    )
 
 
 def _measured(row: Row, solution: lo.Solution) -> None:
