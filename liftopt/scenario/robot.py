@@ -29,7 +29,7 @@ class Tool(Section):
     length: Annotated[float, number("flange to grasp point, along the tool's direction", "m", 0.0, 0.6)] = 0.15
     mass: Annotated[float, number("mass of the gripper", "kg", 0.0, 10.0)] = 0.4
     direction: Annotated[
-        Direction | None, entry("axis of the grasp frame that points away from the robot; by default z")
+        Direction | None, entry("axis of the grasp frame that points away from the robot; by default the likely one")
     ] = None
     turn_deg: Annotated[float, number("how it is turned on the flange about its direction", "deg", -360.0, 360.0)] = 0.0
 

@@ -13,8 +13,6 @@ from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.multibody.robots.known_robot import KnownRobot
 from liftopt.multibody.robots.read_robot import NOTHING, read_robot
 
-ALONG = "z"  # of the grasp frame, where nothing else is said
-
 
 @dataclass(frozen=True)
 class ChosenRobot:
@@ -25,7 +23,8 @@ class ChosenRobot:
         known: it, where it is known by name.
         base_link, grasp_frame: names of links; None leaves the root, or the frame that is proposed.
         locked: positions of joints that are held [rad, m].
-        direction: axis of the grasp frame along which a tool extends.
+        direction: axis of the grasp frame along which a tool extends; None leaves the likely one.
+        front_deg: where its front is, about z from x of its base [deg].
         limits: of joints, in place of its URDF's.
     """
 
@@ -34,7 +33,8 @@ class ChosenRobot:
     base_link: str | None = None
     grasp_frame: str | None = None
     locked: Mapping[str, float] = field(default_factory=dict)
-    direction: str = ALONG
+    direction: str | None = None
+    front_deg: float = 0.0
     limits: Mapping[str, GivenLimits] = field(default_factory=dict)
 
     def examination(self) -> Examination:
@@ -76,9 +76,9 @@ def chosen_robot(
     if isinstance(known, Path):
         description = read_robot(known, arguments=arguments)
         return ChosenRobot(
-            description, None, base_link, grasp_frame, dict(locked or {}), direction or ALONG, dict(limits or {})
+            description, None, base_link, grasp_frame, dict(locked or {}), direction, limits=dict(limits or {})
         )
-    own = known.direction if grasp_frame in (None, known.grasp_frame) else ALONG
+    own = known.direction if grasp_frame in (None, known.grasp_frame) else None
     return ChosenRobot(
         known.description(),
         known,
@@ -86,5 +86,6 @@ def chosen_robot(
         grasp_frame or known.grasp_frame,
         {**known.locked, **(locked or {})},
         direction or own,
+        known.front_deg if base_link in (None, known.base) else 0.0,
         dict(limits or {}),
     )
