@@ -9,6 +9,7 @@ import pinocchio as pin
 
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.joint_units import LEVER
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.chosen_robot import ChosenRobot, chosen_robot
 from liftopt.multibody.robots.given_limits import GivenLimits
@@ -21,9 +22,6 @@ from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.types import Array
 
-# In preset paper, which adds (Nm)^2, one N of a sliding joint counts as this many Nm; in preset natural shares of
-# limits are added, which have no unit. A choice of this model: about the lever at which an arm's last joints bear.
-LEVER = 0.1
 OF_ENTRIES = ("locked", "limits", "grasp_frame")
 
 

@@ -27,6 +27,7 @@ class KnownRobot:
         payload: that its maker publishes [kg], or None where none is known here.
         payload_source: of the payload.
         direction: axis of the grasp frame that points away from the robot (``"z"``, ``"-x"`` ...).
+        hand: mass of a hand that its URDF has and that counts towards the payload [kg].
         springs: what bears part of its weight beside its motors, in words; its torques are smaller than computed.
         own_urdf: writes the URDF of one that liftopt has itself.
     """
@@ -41,6 +42,7 @@ class KnownRobot:
     payload: float | None = None
     payload_source: Source | None = None
     direction: str = "z"
+    hand: float = 0.0
     springs: str = ""
     own_urdf: Callable[[], str] | None = None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.bounds import checked_number
@@ -69,7 +70,7 @@ def robot_agent(
         tool_direction=tool_direction,
         tool_turn=tool_turn,
     )
-    return written_robot(
+    agent = written_robot(
         text,
         name=name,
         posture=posture,
@@ -77,3 +78,4 @@ def robot_agent(
         sliding=sliding,
         ahead=heading(T_world_base),
     )
+    return replace(agent, remarks=found.findings)
