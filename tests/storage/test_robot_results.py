@@ -47,9 +47,7 @@ def test_xarray_reads_it_and_tells_units_of_joints_that_slide(on_a_column: Any) 
         assert data["robot_tau"].sel(robot_joint="robot_column").max() > 100.0
 
 
-def test_a_model_that_the_scenario_does_not_mean_is_refused_in_one_line(
-    ur10: Any, on_a_column: Any, tmp_path: Any
-) -> None:
+def test_a_model_that_is_not_the_scenarios_is_refused_in_one_line(ur10: Any, on_a_column: Any, tmp_path: Any) -> None:
     """The scenario says more than its model has, and a model of another robot stands there."""
     asked, other = ur10.solution.scenario, on_a_column.solution
     cases = {
