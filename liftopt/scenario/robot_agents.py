@@ -10,6 +10,7 @@ import pinocchio as pin
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
+from liftopt.multibody.joint_units import LEVER
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.chosen_robot import ChosenRobot
 from liftopt.multibody.robots.resting_posture import heading
@@ -22,9 +23,6 @@ from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.types import Array
 
-# In preset paper, which adds (Nm)^2, one N of a sliding joint counts as this many Nm; in preset natural shares of
-# limits are added, which have no unit. A choice of this model: about the lever at which an arm's last joints bear.
-LEVER = 0.1
 OF_ENTRIES = ("locked", "limits", "grasp_frame")
 
 
