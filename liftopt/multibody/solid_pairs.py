@@ -5,6 +5,7 @@
 - Within a body, solids on one joint do not move against each other. Of two bodies next to each other along the chain
   those of a robot are exempt, and the one that stands against the first that moves; of a person's, those that are at
   the joint between them. A person's thighs and belly meet where the hip bends: soft tissue gives way there.
+- Two solids of a robot that overlap in most of its postures are too coarse to be kept apart.
 - What stands (an obstacle, a foot, a pedestal) is checked against what stands of others too: it may be placed wrong.
 """
 
@@ -18,6 +19,7 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.coarse_pairs import coarse_pairs
 from liftopt.multibody.solids import FLOOR, Solid, solids_of, solids_of_object
 from liftopt.types import Array
 
@@ -71,7 +73,9 @@ def solid_pairs(
     pairs: list[SolidPair] = []
     bodies = [(agent, solids_of(agent)) for agent in agents]
     for agent, solids in bodies:
-        pairs += _within(agent, solids)
+        own = list(_within(agent, solids))
+        coarse = coarse_pairs(agent, [(pair.one, pair.other) for pair in own]) if agent.kind == "robot" else set()
+        pairs += [pair for pair in own if (id(pair.one), id(pair.other)) not in coarse]
     for (agent, solids), (other, others) in combinations(bodies, 2):
         pairs += _between(agent.kind, solids, other.kind, others)
     box = solids_of_object(lifted)
