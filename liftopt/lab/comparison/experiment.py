@@ -16,6 +16,8 @@ from liftopt.lab.comparison.person import person_comparisons
 from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.meant import the_person, the_robot
 from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.robot.export_formats import state_and_goal
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.robot_record import RobotRecord
 from liftopt.multibody.joint_curves import robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
@@ -124,7 +126,8 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
     asked = dense.scenario.agents[agent.name]
     assert isinstance(asked, Robot)
     curves = robot_curves(agent, asked.model)
-    starts = [lift_start(record, dense.time, agent.q[:, agent.moving]) for record in records]
+    topics = state_and_goal(JointMap.of(dense, agent.name))
+    starts = [lift_start(record, dense.time, agent.q[:, agent.moving], topics) for record in records]
     angles = np.stack(
         [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
     )
@@ -156,7 +159,7 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
 
 
 def _other_reading(dense: Solution, agent: AgentTrajectory, q: Array, effort: Array) -> list[str]:
-    """Return a note if efforts (S, 7) at angles q (S, 7) fit better with another sign, or as torques beyond gravity."""
+    """Return a note if efforts (S, n) at angles q (S, n) fit better with another sign, or as torques beyond gravity."""
     robot, moving = agent_of(dense.scenario, agent.name, dense.urdfs), agent.moving
     full, data = np.zeros((len(q), robot.model.nq)), robot.model.createData()
     full[:, moving] = q

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import pinocchio as pin
 
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent, Grasp, JointLimits
@@ -13,6 +14,7 @@ from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.description import RobotDescription
 from liftopt.multibody.robots.examination import AMBIGUOUS, examined
 from liftopt.multibody.robots.given_limits import GivenLimits
+from liftopt.multibody.robots.resting_posture import heading, resting_posture
 from liftopt.multibody.robots.robot_urdf import robot_urdf
 from liftopt.multibody.urdf import load_model
 from liftopt.types import Array
@@ -43,7 +45,8 @@ def robot_agent(
         tool_mass: of the tool [kg].
         locked: positions of joints that are held [rad, m].
         limits: of joints whose URDF has none or wrong ones.
-        posture: comfortable positions of its joints by their own names, by default the middle of their ranges.
+        posture: comfortable positions of its joints by their own names; of those that it does not name, they are
+            found (``resting_posture``).
 
     Raises:
         InputError: a value is wrong, or the data of the robot are such that it cannot lift; it says which.
@@ -56,16 +59,17 @@ def robot_agent(
             raise finding.refusal(description.source)
     chain = found.chain
     text = robot_urdf(chain, name, T_world_base, tool_length=tool_length, tool_mass=tool_mass)
+    model, own, chosen = load_model(text), _limits(chain), _given_posture(chain, dict(posture or {}))
     return Agent(
         name=name,
         kind="robot",
         urdf=text,
-        model=load_model(text),
+        model=model,
         locked_joints=(),
         grasps=(Grasp(name, f"{name}_grasp"),),
         hands=(f"{name}_grasp",),
-        limits=_limits(chain),
-        posture=_posture(chain, dict(posture or {})),
+        limits=own,
+        posture=_posture(model, f"{name}_grasp", own, T_world_base, chosen),
     )
 
 
@@ -80,15 +84,23 @@ def _limits(chain: RobotChain) -> JointLimits:
     )
 
 
-def _posture(chain: RobotChain, given: dict[str, float]) -> Array:
+def _given_posture(chain: RobotChain, given: dict[str, float]) -> Array:
+    """Return the positions (n,) that are given, NaN of the other joints."""
     source, names = chain.description.source, [joint.name for joint in chain.joints]
     for name in given:
         if name not in names:
             raise InputError(f"{source}: posture", name, f"must be a joint that moves: {', '.join(names)}")
-    middles = [(ends.lower + ends.upper) / 2.0 for ends in chain.ranges]
     return np.array(
         [
-            checked_number(f"{source}: posture.{name}", given.get(name, middle), ends.lower, ends.upper, "rad or m")
-            for name, middle, ends in zip(names, middles, chain.ranges, strict=True)
+            checked_number(f"{source}: posture.{name}", given[name], ends.lower, ends.upper, "rad or m")
+            if name in given
+            else np.nan
+            for name, ends in zip(names, chain.ranges, strict=True)
         ]
     )
+
+
+def _posture(model: pin.Model, frame: str, limits: JointLimits, T_world_base: Array, given: Array) -> Array:
+    if np.isfinite(given).all():
+        return given
+    return resting_posture(model, frame, limits, heading(T_world_base), given)
