@@ -20,7 +20,7 @@ from liftopt.types import Array
 CUTS = (0.25, 0.5, 0.75)  # of the extent of a part, where it is cut
 CRUMB = 0.01  # of it: what is smaller goes with what is nearest
 WASTED = 1.2  # of what they were apart: so large a part that is made of two may be
-ROUGH = 20  # cells along a part's largest extent, one point in each, while cuts are compared
+ROUGH, MOST_ROUGH = 16, 700  # cells along a link's largest extent with a point in each, to compare cuts; at most so many
 BOXIER = 0.75  # of a capsule's volume: where boxes are allowed, one that is smaller is taken in its place
 HALVED = 5  # times that a large triangle is cut in four so that points lie all over it
 THINNEST = 1e-3  # [m]: no edge of a box is shorter
@@ -89,8 +89,13 @@ class Surface:
     def joined(one: Surface, other: Surface) -> Surface:
         """Return two as one."""
         made = Surface(np.concatenate([one.corners, other.corners]), np.concatenate([one.owner, other.owner]))
-        vars(made)["rough"] = np.concatenate([one.rough, other.rough])
-        return made
+        points = np.concatenate([one.rough, other.rough])
+        return made.with_rough(points[:: -(-len(points) // MOST_ROUGH)])
+
+    def with_rough(self, points: Array) -> Surface:
+        """Return the same, with some of its points that are known already."""
+        vars(self)["rough"] = points
+        return self
 
     @property
     def main_owner(self) -> int:
@@ -104,12 +109,12 @@ class Surface:
         height = self.corners @ axis - at
         sides = []
         for sign in (1.0, -1.0):
-            ahead = sign * height
+            ahead, near = sign * height, self.rough[sign * (self.rough @ axis - at) >= 0.0]
             touched = (ahead > 0.0).any(axis=1)
             if not touched.any():
                 return None
             corners, origin = _clipped(self.corners[touched], ahead[touched])
-            sides.append(Surface(corners, self.owner[touched][origin]))
+            sides.append(Surface(corners, self.owner[touched][origin]).with_rough(near))
         return sides[0], sides[1]
 
 

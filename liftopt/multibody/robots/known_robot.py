@@ -27,6 +27,7 @@ class KnownRobot:
         payload: that its maker publishes [kg], or None where none is known here.
         payload_source: of the payload.
         springs: what bears part of its weight beside its motors, in words; its torques are smaller than computed.
+        y_up: whether its meshes are meant to be turned as they state, see ``read_robot``.
         own_urdf: writes the URDF of one that liftopt has itself.
     """
 
@@ -40,6 +41,7 @@ class KnownRobot:
     payload: float | None = None
     payload_source: Source | None = None
     springs: str = ""
+    y_up: bool = False
     own_urdf: Callable[[], str] | None = None
 
     @property
@@ -64,4 +66,4 @@ class KnownRobot:
             return read_robot(self.own_urdf())
         if self.path is None:
             raise InputError(self.name, NO_VALUE, f"{PACKAGE} has this robot and is not installed: {INSTALL}")
-        return read_robot(self.path)
+        return read_robot(self.path, y_up=self.y_up)

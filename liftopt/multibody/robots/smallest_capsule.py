@@ -43,7 +43,10 @@ def smallest_capsule(points: Array) -> FittedCapsule:
 
 
 def rough_volumes(points: Array) -> tuple[float, float]:
-    """Return the volumes of a capsule and of a box around ``points`` (n, 3) along their principal axes [m^3]."""
+    """Return the volumes of a capsule and of a box around ``points`` (n, 3) [m^3].
+
+    Both are along their principal axes; the box is along those of the frame if that one is smaller.
+    """
     own = (points - points.mean(axis=0)) @ principal_axes(points).T
     low, high = own.min(axis=0), own.max(axis=0)
     own -= (low + high) / 2.0
@@ -53,7 +56,7 @@ def rough_volumes(points: Array) -> tuple[float, float]:
     room = np.sqrt(most - across)
     length = np.maximum((own - room).max(axis=0) - (own + room).min(axis=0), 0.0)
     capsules = np.pi * most * (length + 4.0 / 3.0 * np.sqrt(most))
-    return float(capsules.min()), float(np.prod(high - low))
+    return float(capsules.min()), float(min(np.prod(high - low), np.prod(np.ptp(points, axis=0))))
 
 
 def principal_axes(points: Array) -> Array:
