@@ -216,7 +216,7 @@ class SolidFit:
         return box if self.boxes and box.volume < BOXIER * capsule.volume else capsule
 
 
-MOVING, STANDING = SolidFit(4, 3, 1.5e-3, boxes=False), SolidFit(24, 10, 5e-3, boxes=True)
+MOVING, STANDING = SolidFit(4, 3, 1.5e-3, boxes=False), SolidFit(16, 10, 5e-3, boxes=True)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import chain
 
 import numpy as np
 
@@ -11,7 +10,8 @@ from liftopt.types import Array
 
 # Steps toward the middle of the smallest circle: what is left is 1 / steps of its radius at most.
 CIRCLE_STEPS = 60
-REFINEMENTS, FIRST_STEP = 40, 0.15  # of axis and middle: looked around with steps that halve [rad, share of the radius]
+# Of axis and middle: looked around with steps that halve [rad, share of the radius].
+REFINEMENTS, FIRST_STEP, FINEST = 40, 0.15, 0.004
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,9 @@ class FittedCapsule:
 
 def smallest_capsule(points: Array) -> FittedCapsule:
     """Return a small capsule that holds all ``points`` (n, 3) [m]."""
-    tried = (_along(points, axis, _middle(points, axis)) for axis in (*principal_axes(points), *np.eye(3)))
-    return _refined(points, min(tried, key=lambda found: found.volume))
+    axes = np.concatenate([principal_axes(points), np.eye(3)])
+    tried = _Tried.along(points, axes, _middles(points, axes))
+    return _refined(points, tried).capsule
 
 
 def rough_volumes(points: Array) -> tuple[float, float]:
@@ -66,53 +67,77 @@ def principal_axes(points: Array) -> Array:
     return np.asarray(axes if np.linalg.det(axes) > 0.0 else -axes)
 
 
-def _along(points: Array, axis: Array, middle: Array) -> FittedCapsule:
-    """Return the smallest capsule whose axis goes through ``middle`` (3,) along ``axis`` (3,)."""
-    offset = points - middle
-    height = offset @ axis
-    across = np.linalg.norm(offset - np.outer(height, axis), axis=1)
-    radius = float(across.max())
-    # Each point asks the round ends to reach so far and no less.
-    room = np.sqrt(np.maximum(radius**2 - across**2, 0.0))
-    low, high = float((height + room).min()), float((height - room).max())
-    if low > high:  # one ball holds all
-        low = high = (low + high) / 2.0
-        radius = float(np.linalg.norm(offset - low * axis, axis=1).max())
-    return FittedCapsule(middle + low * axis, middle + high * axis, radius)
+@dataclass(frozen=True)
+class _Tried:
+    """The best of capsules with axes and middles that were tried."""
+
+    axis: Array
+    middle: Array
+    low: float
+    high: float
+    radius: float
+    volume: float
+
+    @property
+    def capsule(self) -> FittedCapsule:
+        return FittedCapsule(self.middle + self.low * self.axis, self.middle + self.high * self.axis, self.radius)
+
+    @staticmethod
+    def along(points: Array, axes: Array, middles: Array) -> _Tried:
+        """Return the smallest of the capsules whose axes go through ``middles`` (k, 3) along ``axes`` (k, 3)."""
+        offset = points - middles[:, None]
+        height = np.einsum("kni,ki->kn", offset, axes)
+        squares = np.einsum("kni,kni->kn", offset, offset)
+        across = np.maximum(squares - height**2, 0.0)
+        most = across.max(axis=1)
+        # Each point asks the round ends to reach so far and no less.
+        room = np.sqrt(np.maximum(most[:, None] - across, 0.0))
+        low, high = (height + room).min(axis=1), (height - room).max(axis=1)
+        ball = low > high  # one holds all
+        low = np.where(ball, (low + high) / 2.0, low)
+        high = np.where(ball, low, high)
+        own = squares - 2.0 * low[:, None] * height + low[:, None] ** 2
+        radius = np.sqrt(np.where(ball, own.max(axis=1), most))
+        volume = np.pi * radius**2 * (high - low + 4.0 / 3.0 * radius)
+        k = int(np.argmin(volume))
+        return _Tried(axes[k], middles[k], float(low[k]), float(high[k]), float(radius[k]), float(volume[k]))
 
 
-def _middle(points: Array, axis: Array) -> Array:
-    """Return the middle (3,) of nearly the smallest circle around points seen along an axis (Badoiu & Clarkson 2003)."""
-    flat = points - np.outer(points @ axis, axis)
-    middle = (flat.min(axis=0) + flat.max(axis=0)) / 2.0
-    best, least = middle, np.inf
+def _middles(points: Array, axes: Array) -> Array:
+    """Return for each axis (k, 3) the middle of nearly the smallest circle around points seen along it.
+
+    It goes toward the farthest point by ever shorter steps (Badoiu & Clarkson 2003).
+    """
+    flat = points - np.einsum("ni,ki->kn", points, axes)[:, :, None] * axes[:, None]
+    middle = (flat.min(axis=1) + flat.max(axis=1)) / 2.0
+    best, least, each = middle.copy(), np.full(len(axes), np.inf), np.arange(len(axes))
     for step in range(1, CIRCLE_STEPS + 1):
-        gaps = np.einsum("ni,ni->n", flat - middle, flat - middle)
-        farthest = int(np.argmax(gaps))
-        if gaps[farthest] < least:
-            best, least = middle, gaps[farthest]
-        middle = middle + (flat[farthest] - middle) / (step + 1.0)
-    return np.asarray(best)
+        offset = flat - middle[:, None]
+        gaps = np.einsum("kni,kni->kn", offset, offset)
+        farthest = np.argmax(gaps, axis=1)
+        better = gaps[each, farthest] < least
+        best[better], least[better] = middle[better], gaps[each, farthest][better]
+        middle = middle + offset[each, farthest] / (step + 1.0)
+    return best
 
 
-def _refined(points: Array, found: FittedCapsule) -> FittedCapsule:
+def _refined(points: Array, found: _Tried) -> _Tried:
     """Return a capsule that is no larger, with another axis and middle if they are better."""
-    along = found.end - found.start
-    length = float(np.linalg.norm(along))
-    axis = along / length if length > 1e-9 else np.array([0.0, 0.0, 1.0])
-    middle, step = (found.start + found.end) / 2.0, FIRST_STEP
+    step = FIRST_STEP
     for _ in range(REFINEMENTS):
+        axis = found.axis
         aside = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
         aside /= np.linalg.norm(aside)
-        ways = (aside, np.cross(axis, aside))
-        turned = ((axis + sign * step * way, middle) for way in ways for sign in (1.0, -1.0))
-        moved = ((axis, middle + sign * step * found.radius * way) for way in ways for sign in (1.0, -1.0))
-        tried = [(_along(points, a / np.linalg.norm(a), m), a / np.linalg.norm(a), m) for a, m in chain(turned, moved)]
-        best = min(tried, key=lambda one: one[0].volume)
-        if best[0].volume < found.volume * (1.0 - 1e-6):
-            found, axis, middle = best
+        ways = np.array([aside, np.cross(axis, aside), -aside, -np.cross(axis, aside)])
+        middle = found.middle + (found.low + found.high) / 2.0 * axis
+        axes = np.concatenate([axis + step * ways, np.tile(axis, (4, 1))])
+        axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+        middles = np.concatenate([np.tile(middle, (4, 1)), middle + step * found.radius * ways])
+        best = _Tried.along(points, axes, middles)
+        if best.volume < found.volume * (1.0 - 1e-4):
+            found = best
+        elif step < FINEST:
+            break
         else:
             step /= 2.0
-            if step < 1e-3:
-                break
     return found
