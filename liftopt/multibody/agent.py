@@ -187,6 +187,9 @@ class Agent:
             share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
+        joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
+        shares_kernels: whether it is a serial arm, simple, whose joints turn about or slide along their z axes, and has
+            what is generated for all of them with the same kinds of joints.
     """
 
     name: str
@@ -203,6 +206,8 @@ class Agent:
     spine: Array | None = None
     stance: Stance | None = None
     lean: Lean | None = None
+    joint_weights: Array | None = None
+    shares_kernels: bool = False
 
     @property
     def is_simple(self) -> bool:

@@ -13,8 +13,8 @@ import numpy as np
 
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.poses import joint_placements
+from liftopt.multibody.robots.evenly_spread import evenly_spread
 from liftopt.multibody.solids import Solid
-from liftopt.types import Array
 
 POSTURES = 32
 MOST = 0.5  # of the postures: two solids that overlap in more are not kept apart
@@ -27,16 +27,16 @@ def coarse_pairs(agent: Agent, pairs: Sequence[tuple[Solid, Solid]]) -> set[tupl
         return set()
     number = {id(solid): i for i, solid in enumerate(solids)}
     joints = sorted({solid.joint for solid in solids})
-    placed = joint_placements(agent.reduced(), spread_postures(agent), joints)
+    low, high = agent.limits.q_lower, agent.limits.q_upper
+    postures = low + evenly_spread(POSTURES, len(low)) * (high - low)
+    placed = joint_placements(agent.reduced(), postures, joints)
     places = np.stack([placed[:, joints.index(solid.joint)] @ solid.T_joint_solid for solid in solids], axis=1)
     around = np.array([np.linalg.norm(solid.size) / 2.0 + solid.radius for solid in solids])
     shapes = [coal.Box(*solid.size) if solid.kind == "box" else coal.Capsule(*solid.size) for solid in solids]
     request, result, found = coal.DistanceRequest(), coal.DistanceResult(), set()
     for one, other in pairs:
         i, j = number[id(one)], number[id(other)]
-        near = np.flatnonzero(
-            np.linalg.norm(places[:, i, :3, 3] - places[:, j, :3, 3], axis=1) < around[i] + around[j]
-        )
+        near = np.flatnonzero(np.linalg.norm(places[:, i, :3, 3] - places[:, j, :3, 3], axis=1) < around[i] + around[j])
         overlaps = 0
         for k in near if len(near) > MOST * POSTURES else ():
             first, second = (coal.Transform3s(places[k, n, :3, :3], places[k, n, :3, 3]) for n in (i, j))
@@ -45,19 +45,3 @@ def coarse_pairs(agent: Agent, pairs: Sequence[tuple[Solid, Solid]]) -> set[tupl
         if overlaps > MOST * POSTURES:
             found.add((id(one), id(other)))
     return found
-
-
-def spread_postures(agent: Agent) -> Array:
-    """Return postures (K, n) all over the ranges of an agent's joints, the same each time.
-
-    Each joint goes through its range by a step of its own, a power of the root of x^(n+1) = x + 1 (M. Roberts, 2018, The
-    unreasonable effectiveness of quasirandom sequences).
-    """
-    low, high = agent.limits.q_lower, agent.limits.q_upper
-    count = len(low)
-    root = 2.0
-    for _ in range(60):
-        root = (1.0 + root) ** (1.0 / (count + 1.0))
-    steps = root ** -np.arange(1.0, count + 1.0)
-    shares = np.mod(0.5 + np.outer(np.arange(1, POSTURES + 1), steps), 1.0)
-    return np.asarray(low + shares * (high - low))

@@ -100,4 +100,3 @@ def _outward(corners: Array) -> Mesh:
     corners = np.where(inward[:, None, None], corners[:, ::-1], corners)
     vertices, index = np.unique(np.round(corners.reshape(-1, 3), 7), axis=0, return_inverse=True)
     return Mesh(vertices, index.reshape(-1, 3).astype(np.int64))
-

@@ -21,8 +21,8 @@ from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.robot_record import RobotRecord
 from liftopt.multibody.joint_curves import robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.agents import Robot
 from liftopt.scenario.build import agent_of
+from liftopt.scenario.robot import Robot
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.types import Array

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from liftopt.lab.meant import the_robot
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.robots.catalogue import known_robots
-from liftopt.scenario.agents import Robot
+from liftopt.scenario.robot import Robot
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 

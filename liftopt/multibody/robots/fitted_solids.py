@@ -20,7 +20,10 @@ from liftopt.types import Array
 CUTS = (0.25, 0.5, 0.75)  # of the extent of a part, where it is cut
 CRUMB = 0.01  # of it: what is smaller goes with what is nearest
 WASTED = 1.2  # of what they were apart: so large a part that is made of two may be
-ROUGH, MOST_ROUGH = 16, 700  # cells along a link's largest extent with a point in each, to compare cuts; at most so many
+ROUGH, MOST_ROUGH = (
+    16,
+    700,
+)  # cells along a link's largest extent with a point in each, to compare cuts; at most so many
 BOXIER = 0.75  # of a capsule's volume: where boxes are allowed, one that is smaller is taken in its place
 HALVED = 5  # times that a large triangle is cut in four so that points lie all over it
 THINNEST = 1e-3  # [m]: no edge of a box is shorter
@@ -197,7 +200,9 @@ class SolidFit:
             waste = {key: both.cost - alive[key[0]].cost - alive[key[1]].cost for key, both in pairs.items()}
             one, other = min(waste, key=lambda key: waste[key])
             both = pairs[one, other]
-            if len(alive) <= self.most and both.cost > max(WASTED * (apart := alive[one].cost + alive[other].cost), apart + self.fine / 5.0):
+            if len(alive) <= self.most and both.cost > max(
+                WASTED * (apart := alive[one].cost + alive[other].cost), apart + self.fine / 5.0
+            ):
                 break
             new = max(alive) + 1
             del alive[one], alive[other]

@@ -36,7 +36,9 @@ def body_surfaces(chain: RobotChain) -> tuple[dict[int, Surface], tuple[CarriedL
                 found.setdefault(item.body, []).append((moved, number))
                 break
     surfaces = {
-        body: Surface(np.concatenate([c for c, _ in parts]), np.repeat([n for _, n in parts], [len(c) for c, _ in parts]))
+        body: Surface(
+            np.concatenate([c for c, _ in parts]), np.repeat([n for _, n in parts], [len(c) for c, _ in parts])
+        )
         for body, parts in found.items()
     }
     return surfaces, carried

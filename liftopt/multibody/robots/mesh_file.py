@@ -39,9 +39,7 @@ class Triangles:
     colour: Rgb | None = None
 
 
-def read_mesh(
-    path: Path, scale: Sequence[float] = (1.0, 1.0, 1.0), *, y_up: bool = False
-) -> tuple[Triangles, ...]:
+def read_mesh(path: Path, scale: Sequence[float] = (1.0, 1.0, 1.0), *, y_up: bool = False) -> tuple[Triangles, ...]:
     """Return the triangles of a file.
 
     Args:

@@ -4,10 +4,8 @@ The middle of a robot's ranges is often its worst posture. There a UR stands str
 useless for one of the directions. Here the tool points level ahead, at a share of the reach at which an arm is half
 bent, and of many such postures that one is taken that moves best in all directions with room left in every joint.
 
-The candidates are spread evenly over the ranges by an additive recurrence, whose step is made of the powers of the
-generalised golden ratio (Roberts, 2018, "The unreasonable effectiveness of quasirandom sequences"), so that equal
-robots have equal postures. Each of the best is led to where the tool should be by damped least squares, and judged
-there.
+The candidates are spread evenly over the ranges, so that equal robots have equal postures. Each of the best is led to
+where the tool should be by damped least squares, and judged there.
 """
 
 from __future__ import annotations
@@ -19,6 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.multibody.agent import JointLimits
+from liftopt.multibody.robots.evenly_spread import evenly_spread
 from liftopt.types import Array
 
 CANDIDATES, LED, KEPT = 256, 16, 2
@@ -71,7 +70,7 @@ def resting_posture(
         chosen = np.isfinite(given)
         lower, upper = np.where(chosen, given, lower), np.where(chosen, given, upper)
     data, at = model.createData(), model.getFrameId(frame)
-    spread = lower + _evenly_spread(CANDIDATES, model.nq) * (upper - lower)
+    spread = lower + evenly_spread(CANDIDATES, model.nq) * (upper - lower)
     aim = _aim(model, data, at, spread, ahead)
 
     def rank(q: Array) -> float:
@@ -96,7 +95,7 @@ def heading(T_world_base: Array) -> Array:
 def _bettered(q: Array, led: Callable[[Array], Array], rank: Callable[[Array], float], ways: Array) -> Array:
     """Return a posture that steps in many directions, ever shorter ones, lead to."""
     found = rank(q)
-    for number, step in enumerate(_evenly_spread(STEPS, len(q)) - 0.5):
+    for number, step in enumerate(evenly_spread(STEPS, len(q)) - 0.5):
         trial = led(q + LONGEST_SHARE * (1.0 - number / STEPS) * step * ways)
         if (its := rank(trial)) > found:
             q, found = trial, its
@@ -110,15 +109,6 @@ def _usual(limits: JointLimits) -> tuple[Array, Array]:
     lower, upper = np.where(usable, lower, limits.q_lower), np.where(usable, upper, limits.q_upper)
     end = END * (upper - lower)
     return lower + end, upper - end
-
-
-def _evenly_spread(count: int, n: int) -> Array:
-    """Return points (count, n) that fill the unit cube evenly."""
-    ratio = 2.0
-    for _ in range(60):
-        ratio = (1.0 + ratio) ** (1.0 / (n + 1))
-    step = ratio ** -np.arange(1.0, n + 1)
-    return np.asarray((0.5 + np.arange(1, count + 1)[:, None] * step) % 1.0)
 
 
 def _aim(model: pin.Model, data: pin.Data, at: int, spread: Array, ahead: Array) -> _Aim:

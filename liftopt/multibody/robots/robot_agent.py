@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-import pinocchio as pin
-
-from liftopt.errors import InputError
-from liftopt.multibody.agent import Agent, Grasp, JointLimits
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.bounds import checked_number
-from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.description import RobotDescription
 from liftopt.multibody.robots.examination import AMBIGUOUS, examined
 from liftopt.multibody.robots.given_limits import GivenLimits
-from liftopt.multibody.robots.resting_posture import heading, resting_posture
+from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_urdf import robot_urdf
-from liftopt.multibody.urdf import load_model
+from liftopt.multibody.robots.tool import UNTURNED
+from liftopt.multibody.robots.written_robot import written_robot
 from liftopt.types import Array
 
 
@@ -29,9 +25,13 @@ def robot_agent(
     base: str | None = None,
     tool_length: float = 0.0,
     tool_mass: float = 0.0,
+    tool_direction: str = UNTURNED,
+    tool_turn: float = 0.0,
     locked: Mapping[str, float] | None = None,
     limits: Mapping[str, GivenLimits] | None = None,
     posture: Mapping[str, float] | None = None,
+    joint_weights: Mapping[str, float] | None = None,
+    sliding: float = 1.0,
 ) -> Agent:
     """Return a robot as an agent whose base is bolted down; it holds at ``<name>_grasp``, the tool's tip.
 
@@ -41,12 +41,15 @@ def robot_agent(
         T_world_base: (4, 4) placement of its base link.
         grasp_frame: name of the link that carries the tool; None takes the one that is proposed, if it is the only one.
         base: name of the link that is bolted down, by default the root.
-        tool_length: from the grasp frame along its z axis [m].
+        tool_length: from the grasp frame [m].
         tool_mass: of the tool [kg].
+        tool_direction: axis of the grasp frame along which it extends, ``"z"`` or ``"-x"``; z of ``<name>_grasp``.
+        tool_turn: how it is turned about that [rad].
         locked: positions of joints that are held [rad, m].
         limits: of joints whose URDF has none or wrong ones.
-        posture: comfortable positions of its joints by their own names; of those that it does not name, they are
-            found (``resting_posture``).
+        posture: comfortable positions, as ``written_robot`` has them.
+        joint_weights: factors in the objective, as there.
+        sliding: that factor of joints that slide, as there.
 
     Raises:
         InputError: a value is wrong, or the data of the robot are such that it cannot lift; it says which.
@@ -57,50 +60,20 @@ def robot_agent(
     for finding in found.findings:
         if finding.severity == "refused" or finding.code == AMBIGUOUS:
             raise finding.refusal(description.source)
-    chain = found.chain
-    text = robot_urdf(chain, name, T_world_base, tool_length=tool_length, tool_mass=tool_mass)
-    model, own, chosen = load_model(text), _limits(chain), _given_posture(chain, dict(posture or {}))
-    return Agent(
+    text = robot_urdf(
+        found.chain,
+        name,
+        T_world_base,
+        tool_length=tool_length,
+        tool_mass=tool_mass,
+        tool_direction=tool_direction,
+        tool_turn=tool_turn,
+    )
+    return written_robot(
+        text,
         name=name,
-        kind="robot",
-        urdf=text,
-        model=model,
-        locked_joints=(),
-        grasps=(Grasp(name, f"{name}_grasp"),),
-        hands=(f"{name}_grasp",),
-        limits=own,
-        posture=_posture(model, f"{name}_grasp", own, T_world_base, chosen),
+        posture=posture,
+        joint_weights=joint_weights,
+        sliding=sliding,
+        ahead=heading(T_world_base),
     )
-
-
-def _limits(chain: RobotChain) -> JointLimits:
-    effort = np.array([joint.effort for joint in chain.joints], dtype=np.float64)
-    return JointLimits(
-        q_lower=np.array([ends.lower for ends in chain.ranges]),
-        q_upper=np.array([ends.upper for ends in chain.ranges]),
-        velocity=np.array([joint.velocity for joint in chain.joints], dtype=np.float64),
-        tau_lower=-effort,
-        tau_upper=effort,
-    )
-
-
-def _given_posture(chain: RobotChain, given: dict[str, float]) -> Array:
-    """Return the positions (n,) that are given, NaN of the other joints."""
-    source, names = chain.description.source, [joint.name for joint in chain.joints]
-    for name in given:
-        if name not in names:
-            raise InputError(f"{source}: posture", name, f"must be a joint that moves: {', '.join(names)}")
-    return np.array(
-        [
-            checked_number(f"{source}: posture.{name}", given[name], ends.lower, ends.upper, "rad or m")
-            if name in given
-            else np.nan
-            for name, ends in zip(names, chain.ranges, strict=True)
-        ]
-    )
-
-
-def _posture(model: pin.Model, frame: str, limits: JointLimits, T_world_base: Array, given: Array) -> Array:
-    if np.isfinite(given).all():
-        return given
-    return resting_posture(model, frame, limits, heading(T_world_base), given)

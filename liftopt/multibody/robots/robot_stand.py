@@ -50,9 +50,7 @@ def _pedestal(middle: Array, extent: Array, height: float) -> Iterator[Shape]:
     radius = float(np.clip(broadest / 2.0, THIN, THICK))
     edge = 2.0 * max(2.0 * radius, LEAST)
     yield box_at(f"{STAND}foot", GREY, np.array([*middle, FOOT / 2.0]), (edge, edge, FOOT))
-    yield Cylinder(
-        f"{STAND}column", GREY, np.array([*middle, FOOT]), np.array([*middle, height]), radius
-    )
+    yield Cylinder(f"{STAND}column", GREY, np.array([*middle, FOOT]), np.array([*middle, height]), radius)
 
 
 def _plate(base: Array) -> Iterator[Shape]:
