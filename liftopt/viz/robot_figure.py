@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from liftopt.errors import InputError
-from liftopt.multibody.robots.carried_links import BASE, carried_links
+from liftopt.multibody.robots.carried_links import carried_links
 from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.link_surfaces import shape_triangles
 from liftopt.multibody.robots.mesh_file import Triangles, read_mesh

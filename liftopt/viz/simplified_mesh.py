@@ -1,7 +1,7 @@
 """A mesh with fewer triangles that looks much the same, and with edges that look sharp where it has sharp ones.
 
-All vertices in a cell of a grid become one, where it is nearest to the planes of the triangles around them: quadric error
-metrics on a grid (Garland & Heckbert 1997; Lindstrom 2000). Nothing moves by more than a cell's diagonal.
+All vertices in a cell of a grid become one, where it is nearest to the planes of the triangles around them: quadric
+error metrics on a grid (Garland & Heckbert 1997; Lindstrom 2000). Nothing moves by more than a cell's diagonal.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SHARP = np.radians(40.0)  # between two triangles: from here on their edge is on
 
 
 def simplified(mesh: Mesh, cell: float) -> Mesh:
-    """Return a mesh whose vertices in each cell of a grid are one; triangles that become a line or a point are left out.
+    """Return a mesh whose vertices in each cell of a grid are one, without triangles that are then a line or a point.
 
     Args:
         mesh: any.

@@ -1,8 +1,8 @@
 """Capsules and boxes around the triangles of a body: few, and small together.
 
-Links of a body, and halves of them, are parts; a plane cuts a part where the solids of its halves are smallest together.
-Then the two parts that take least more room together are made one, again and again, until there are few and another
-step would waste room. Every solid holds all of its part, so that together they hold all of the surface.
+Links of a body, and halves of them, are parts; a plane cuts a part where the solids of its halves are smallest
+together. Then the two parts that take least more room together are made one, again and again, until there are few and
+another step would waste room. Every solid holds all of its part, so that together they hold all of the surface.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from liftopt.types import Array
 CUTS = (0.25, 0.5, 0.75)  # of the extent of a part, where it is cut
 CRUMB = 0.01  # of it: what is smaller goes with what is nearest
 WASTED = 1.2  # of what they were apart: so large a part that is made of two may be
+FREE = 5.0  # of a part so fine that it is not cut, this part may be wasted anyhow
 ROUGH, MOST_ROUGH = (
     16,
     700,
@@ -199,10 +200,8 @@ class SolidFit:
         while pairs:
             waste = {key: both.cost - alive[key[0]].cost - alive[key[1]].cost for key, both in pairs.items()}
             one, other = min(waste, key=lambda key: waste[key])
-            both = pairs[one, other]
-            if len(alive) <= self.most and both.cost > max(
-                WASTED * (apart := alive[one].cost + alive[other].cost), apart + self.fine / 5.0
-            ):
+            both, apart = pairs[one, other], alive[one].cost + alive[other].cost
+            if len(alive) <= self.most and both.cost > max(WASTED * apart, apart + self.fine / FREE):
                 break
             new = max(alive) + 1
             del alive[one], alive[other]

@@ -35,12 +35,10 @@ def body_surfaces(chain: RobotChain) -> tuple[dict[int, Surface], tuple[CarriedL
                 moved = corners @ item.placement[:3, :3].T + item.placement[:3, 3]
                 found.setdefault(item.body, []).append((moved, number))
                 break
-    surfaces = {
-        body: Surface(
-            np.concatenate([c for c, _ in parts]), np.repeat([n for _, n in parts], [len(c) for c, _ in parts])
-        )
-        for body, parts in found.items()
-    }
+    surfaces = {}
+    for body, parts in found.items():
+        owner = np.repeat([number for _, number in parts], [len(corners) for corners, _ in parts])
+        surfaces[body] = Surface(np.concatenate([corners for corners, _ in parts]), owner)
     return surfaces, carried
 
 

@@ -39,6 +39,11 @@ class Triangles:
     colour: Rgb | None = None
 
 
+def can_be_read(path: Path) -> bool:
+    """Return whether a file's name ends as those of meshes do that are read here."""
+    return path.suffix.lower().removeprefix(".") in FORMATS
+
+
 def read_mesh(path: Path, scale: Sequence[float] = (1.0, 1.0, 1.0), *, y_up: bool = False) -> tuple[Triangles, ...]:
     """Return the triangles of a file.
 
@@ -51,7 +56,7 @@ def read_mesh(path: Path, scale: Sequence[float] = (1.0, 1.0, 1.0), *, y_up: boo
         InputError: it has another format, cannot be read, or is beyond what a robot needs; it says which.
     """
     shown, kind = str(path), path.suffix.lower().removeprefix(".")
-    if kind not in FORMATS:
+    if not can_be_read(path):
         raise InputError(shown, NO_VALUE, f"a mesh must be one of {', '.join(FORMATS)}")
     try:
         content = read_regular(path, LARGEST, "a mesh is a file of triangles")
@@ -80,6 +85,7 @@ def _pieces(content: bytes, kind: str) -> list[Triangles]:
     # From bytes and without a resolver: what the file names, textures for instance, is not looked for.
     loaded = trimesh.load_scene(BytesIO(content), file_type=kind, resolver=None, process=False)
     pieces = []
+    mesh: Any
     for mesh in loaded.dump():
         triangles = np.asarray(getattr(mesh, "faces", np.zeros((0, 3))), dtype=np.int64)
         if len(triangles):

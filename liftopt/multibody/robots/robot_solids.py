@@ -10,8 +10,9 @@ import numpy as np
 
 from liftopt.multibody.robots.carried_links import BASE
 from liftopt.multibody.robots.chain import RobotChain
-from liftopt.multibody.robots.fitted_solids import MOVING, STANDING, FittedCapsule
+from liftopt.multibody.robots.fitted_solids import MOVING, STANDING
 from liftopt.multibody.robots.link_surfaces import body_surfaces
+from liftopt.multibody.robots.smallest_capsule import FittedCapsule
 from liftopt.multibody.shapes import Box, Capsule, Colour, Shape
 from liftopt.multibody.solids import END_SPHERES
 from liftopt.types import Array
@@ -44,7 +45,8 @@ def robot_solids(chain: RobotChain) -> RobotSolids:
         if body not in surfaces:
             shapes[body] = tubes[body]
             continue
-        found, names = [], {}
+        found: list[Shape] = []
+        names: dict[str, int] = {}
         for solid, owner in (STANDING if body == BASE else MOVING).solids(surfaces[body]):
             plain = _plain(carried[owner].link.name)
             names[plain] = names.get(plain, 0) + 1

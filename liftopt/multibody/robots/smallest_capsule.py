@@ -118,7 +118,7 @@ def _middles(points: Array, axes: Array) -> Array:
         better = gaps[each, farthest] < least
         best[better], least[better] = middle[better], gaps[each, farthest][better]
         middle = middle + offset[each, farthest] / (step + 1.0)
-    return best
+    return np.asarray(best)
 
 
 def _refined(points: Array, found: _Tried) -> _Tried:
