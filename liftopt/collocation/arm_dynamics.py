@@ -1,7 +1,7 @@
-"""What happens at one knot of a serial arm: the functions of ``dynamics`` and ``wrench_dynamics`` for all arms at once.
+"""What happens at one knot of a serial arm: the functions of ``wrench_dynamics`` for all arms at once.
 
 Where the arm stands, its lengths and angles, its masses, its tool and how it holds are parameters, so that one kernel
-serves every arm with the same kinds of joints in the same order.
+serves every arm with the same kinds of joints in the same order. A hold without moments has no unknowns for them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from liftopt.collocation import (
 )
 from liftopt.collocation.arm_frames import ArmFrames
 from liftopt.collocation.arm_knot import ArmKnot
-from liftopt.collocation.arm_numbers import numbers_of
+from liftopt.collocation.arm_numbers import numbers_of, placement_numbers
 from liftopt.collocation.dynamics import KnotFunctions, Topology
 from liftopt.types import Array
 
@@ -37,29 +37,26 @@ class ArmTopology(Topology):
 
     Attributes:
         kinds: of its joints from the base on, R for one that turns and P for one that slides.
-        moments: whether its hold transmits a moment too.
     """
 
     kinds: str = ""
-    moments: bool = False
 
     @staticmethod
-    def holding(model: pin.Model, frame: str, grip: Array | None = None) -> ArmTopology:
+    def holding(model: pin.Model, frame: str, grip: Array) -> ArmTopology:
         """Read the topology out of a Pinocchio model.
 
         Args:
             model: of the arm.
             frame: name of the grasp frame, which the last link carries.
-            grip: (3, 3) ``Grasp.R_hand_object`` where the hold transmits a moment too; None where it is at a point.
+            grip: (3, 3) ``Grasp.R_hand_object``.
 
         Raises:
             ModelError: it is no serial arm, or a joint neither turns about nor slides along its z axis.
         """
         frames = ArmFrames.of(model)
         hand = frames.own[-1].inverse() * model.frames[model.getFrameId(frame)].placement
-        held = [] if grip is None else [*(hand.rotation @ grip).ravel()]
-        entries = np.array([*numbers_of(frames), *hand.translation, *held])
-        return ArmTopology(model, (frame,), entries, frames.kinds, grip is not None)
+        held = placement_numbers(hand.rotation @ grip, hand.translation)
+        return ArmTopology(model, (frame,), np.array([*numbers_of(frames), *held]), frames.kinds)
 
     @property
     def parameters(self) -> Array:
@@ -68,9 +65,7 @@ class ArmTopology(Topology):
 
     def signature(self) -> str:
         """Return a digest of all that a kernel is generated from; equal signatures share a kernel."""
-        return signature_of(
-            f"{self.kinds} {self.moments}", self.model, __file__, *(str(part.__file__) for part in PARTS)
-        )
+        return signature_of(self.kinds, self.model, __file__, *(str(part.__file__) for part in PARTS))
 
 
 def signature_of(structure: str, model: pin.Model, *sources: str) -> str:
@@ -83,15 +78,11 @@ def signature_of(structure: str, model: pin.Model, *sources: str) -> str:
 
 
 def arm_functions(topology: ArmTopology) -> KnotFunctions:
-    """Return the functions of an arm.
-
-    Knot variables and outputs are those of ``dynamics.agent_functions``, and of ``wrench_dynamics.
-    wrench_agent_functions`` where its hold transmits a moment.
-    """
+    """Return the functions of an arm, knot variables and outputs as of ``wrench_dynamics.wrench_agent_functions``."""
     import casadi as ca
 
     gravity = ca.SX(ca.sparsify(ca.DM(np.asarray(topology.model.gravity.linear))))
-    knot = ArmKnot(topology.kinds, topology.moments, len(topology.entries), gravity)
+    knot = ArmKnot(topology.kinds, len(topology.entries), gravity)
     y, p, m, slopes = knot.y, knot.p, knot.m, knot.jacobian()
     leading, d = ca.SX.sym("slopes", slopes.sparsity()), ca.SX.sym("d", knot.n)
     rows = leading[: knot.n, :]

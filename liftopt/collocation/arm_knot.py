@@ -1,6 +1,6 @@
 """The outputs of a serial arm that holds at one knot, on CasADi symbols, and their first and second derivatives.
 
-They are those of ``dynamics`` and ``wrench_dynamics``. ``arm_chain`` knows what the motion takes; here are the hand,
+They are those of ``wrench_dynamics``. ``arm_chain`` knows what the motion takes; here are the hand,
 the object's attitude, and where each derivative belongs. Joint k is before joint j, or is j, throughout.
 """
 
@@ -14,8 +14,8 @@ from liftopt.collocation.dynamics import roll_pitch_yaw
 from liftopt.collocation.spatial_symbols import Force
 from liftopt.collocation.standing_hand import Hand
 
-# Outputs after the torques: p_world_grasp, f . f; and where moments are transmitted m . m, cosine, f_object, m_object.
-AT_A_POINT, WITH_MOMENT = 4, 12
+# After the torques: p_world_grasp, f . f, m . m, cosine, f_object, m_object.
+HAND_OUTPUTS, COSINE = 12, 5
 
 
 class ArmKnot:
@@ -26,39 +26,35 @@ class ArmKnot:
         n: number of joints.
     """
 
-    def __init__(self, kinds: str, moments: bool, numbers: int, gravity: Any) -> None:
+    def __init__(self, kinds: str, numbers: int, gravity: Any) -> None:
         """Set the knot up.
 
         Args:
             kinds: of the joints from the base on, R or P.
-            moments: whether the hold transmits a moment too.
             numbers: how many parameters there are beside the period.
             gravity: (3,) in the world.
         """
         import casadi as ca
 
-        self.n, self.moments = len(kinds), moments
+        self.n = len(kinds)
         period, symbols = ca.SX.sym("T"), ca.SX.sym("p", numbers)
         q, dq, ddq = (ca.SX.sym(name, self.n) for name in ("q", "dq", "ddq"))
-        self.f = ca.SX.sym("f", 3)
-        self.moment, self.angles = (ca.SX.sym(name, 3) if moments else ca.SX(3, 1) for name in ("m", "r"))
-        self.others = ca.vertcat(self.f, self.moment, self.angles) if moments else self.f
+        self.force, self.moment, self.angles = (ca.SX.sym(name, 3) for name in ("f", "m", "r"))
+        self.others = ca.vertcat(self.force, self.moment, self.angles)
         self.y, self.p = ca.vertcat(q, dq, ddq, self.others), ca.vertcat(period, symbols)
-        self.m = ca.SX.sym("w", self.n + (WITH_MOMENT if moments else AT_A_POINT))
+        self.m = ca.SX.sym("w", self.n + HAND_OUTPUTS)
         reader = Reader(symbols)
         self.chain = ArmChain(kinds, reader, (q, dq, ddq), self.m[: self.n], gravity, period)
-        self.attitude = roll_pitch_yaw(ca, self.angles)[0] if moments else ca.SX(3, 3)
+        self.attitude, _ = roll_pitch_yaw(ca, self.angles)
         self.hand = self._hand(reader)
 
     def _hand(self, reader: Reader) -> Hand:
         import casadi as ca
 
         last, n = self.chain.placed[-1], self.n
-        point = last.origin + ca.mtimes(last.rotation, reader.take(3))
-        grip = ca.mtimes(last.rotation, reader.rotation()) if self.moments else ca.SX(3, 3)
-        force, moment, pull, aim = map(self._to_hub, (self.f, self.moment, self.m[n : n + 3], self.attitude))
-        alike = self.m[n + 5] if self.moments else ca.SX(1, 1)
-        return Hand.of(self.chain, n, point, force, moment, pull, alike, grip, aim)
+        grip, point = ca.mtimes(last.rotation, reader.rotation()), ca.mtimes(last.rotation, reader.take(3))
+        force, moment, pull, aim = map(self._to_hub, (self.force, self.moment, self.m[n : n + 3], self.attitude))
+        return Hand.of(self.chain, n, last.origin + point, force, moment, pull, self.m[n + COSINE], grip, aim)
 
     def value(self) -> Any:
         """Return the outputs."""
@@ -85,7 +81,7 @@ class ArmKnot:
             found[j - 1], found[n + j - 1] = by_position + hand.slope(j), by_velocity
             found[2 * n + j - 1] = by_acceleration
         others = self._weighted_own()
-        others += ca.dot(self.f, self._to_world(whole.at(hand.point)))
+        others += ca.dot(self.force, self._to_world(whole.at(hand.point)))
         others += ca.dot(self.moment, self._to_world(whole.angular))
         return ca.vertcat(found, ca.gradient(others, self.others))
 
@@ -110,9 +106,8 @@ class ArmKnot:
                     found[above, order * n + own] = axis.dot(column)
             reach = self._to_world(hand.reach[j])
             found[own, 3 * n : 3 * n + 3], found[n : n + 3, own] = reach.T, reach
-            if self.moments:
-                found[own, 3 * n + 3 : 3 * n + 6] = self._to_world(hand.axis[j]).T
-                found[n + 5, own] = ca.dot(hand.axis[j], turn)
+            found[own, 3 * n + 3 : 3 * n + 6] = self._to_world(hand.axis[j]).T
+            found[n + COSINE, own] = ca.dot(hand.axis[j], turn)
         found[n + 3 :, 3 * n :] = ca.jacobian(self._own(), self.others)
         return ca.sparsify(found)
 
@@ -138,10 +133,8 @@ class ArmKnot:
                 found[n + above, n + own] = axis.dot(rates)
                 found[above, 2 * n + own] = weighted.dot(momentum)
             found[own, 3 * n : 3 * n + 3] = self._to_world(hand.swing[j]).T
-            if self.moments:
-                found[own, 3 * n + 3 : 3 * n + 6] = self._to_world(hand.tilt[j]).T
-        if self.moments:
-            found[:n, 3 * n + 6 :] = self._twisted()
+            found[own, 3 * n + 3 : 3 * n + 6] = self._to_world(hand.tilt[j]).T
+        found[:n, 3 * n + 6 :] = self._twisted()
         found[3 * n :, 3 * n :] = ca.hessian(self._weighted_own(), self.others)[0]
         return ca.triu(ca.sparsify(found))
 
@@ -167,11 +160,8 @@ class ArmKnot:
         """Return the outputs after the grasp point: of them the joints move the cosine alone."""
         import casadi as ca
 
-        f, m = self.f, self.moment
-        if not self.moments:
-            return ca.dot(f, f)
+        f, m, turned = self.force, self.moment, self.attitude.T
         cosine = (ca.dot(self.hand.grip, self.hand.aim) - 1) / 2
-        turned = self.attitude.T
         return ca.vertcat(ca.dot(f, f), ca.dot(m, m), cosine, ca.mtimes(turned, f), ca.mtimes(turned, m))
 
     def _weighted_own(self) -> Any:

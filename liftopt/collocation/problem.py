@@ -239,8 +239,7 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
     for agent in agents:
         model = agent.reduced()
         if agent.shares_kernels:
-            grip = None if agent.pushes_at_a_point else agent.grasps[0].R_hand_object
-            requests.append((arm_functions, ArmTopology.holding(model, agent.hands[0], grip)))
+            requests.append((arm_functions, ArmTopology.holding(model, agent.hands[0], agent.grasps[0].R_hand_object)))
         elif agent.pushes_at_a_point:
             requests.append((agent_functions, Topology.of(model, agent.hands)))
         elif agent.is_simple:

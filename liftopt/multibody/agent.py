@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
@@ -22,9 +23,9 @@ class JointLimits:
     """Limits of an agent's moving joints, in the joint order of its reduced model; all arrays (n,).
 
     Attributes:
-        q_lower, q_upper: position [rad].
-        velocity: speed, both directions [rad/s].
-        tau_lower, tau_upper: torque, each direction apart [Nm]; ``tau_lower`` is negative.
+        q_lower, q_upper: position [rad, m].
+        velocity: speed, both directions [rad/s, m/s].
+        tau_lower, tau_upper: torque or force, each direction apart [Nm, N]; ``tau_lower`` is negative.
     """
 
     q_lower: Array
@@ -216,13 +217,18 @@ class Agent:
 
     @property
     def pushes_at_a_point(self) -> bool:
-        """Whether it is simple, and its hold a force at a point and no more."""
-        return self.is_simple and all(grasp.is_point_contact for grasp in self.grasps)
+        """Whether it is simple, its hold a force at a point, and what is generated for it has room for no more."""
+        return self.is_simple and not self.shares_kernels and all(grasp.is_point_contact for grasp in self.grasps)
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
         """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
+
+    @property
+    def sliding(self) -> npt.NDArray[np.bool_]:
+        """(all joints,) True for those that slide, whose position is in m and whose effort is in N; others turn."""
+        return np.array([joint.shortname().startswith("JointModelP") for joint in list(self.model.joints)[1:]])
 
     @property
     def T_world_base(self) -> Array:

@@ -82,7 +82,6 @@ def arm_requests(kinds: str) -> list[Request]:
         joint = arm.addJoint(joint, moving, pin.SE3.Identity(), str(number))
     arm.addFrame(pin.Frame("hand", joint, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
     found: list[tuple[Any, Topology]] = [
-        (arm_functions, ArmTopology.holding(arm, "hand")),
         (arm_functions, ArmTopology.holding(arm, "hand", np.eye(3))),
         (arm_pose_functions, ArmPoseTopology.of_links(arm)),
     ]
