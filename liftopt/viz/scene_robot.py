@@ -13,7 +13,7 @@ from liftopt.multibody.agent import Agent
 from liftopt.multibody.robots.carried_links import BASE
 from liftopt.multibody.robots.robot_stand import STAND
 from liftopt.multibody.solids import END_SPHERES
-from liftopt.types import Array
+from liftopt.viz.base import base_link_of
 from liftopt.viz.robot_figure import FigurePiece
 from liftopt.viz.scene_mesh import Mesh, ball, block, capsule, cylinder
 from liftopt.viz.scene_part import GROUND, Colour, Part
@@ -31,7 +31,7 @@ def robot_parts(agent: Agent, figure: Sequence[FigurePiece] = ()) -> list[Part]:
     parts = []
     for number, piece in enumerate(figure):
         joint = piece.joint + 1
-        placement = _base(model, data) if piece.joint == BASE else data.oMi[joint].homogeneous
+        placement = base_link_of(agent) if piece.joint == BASE else data.oMi[joint].homogeneous
         body = GROUND if piece.joint == BASE else model.names[joint]
         parts.append(Part(body, f"mesh_{number}", piece.colour, piece.mesh.seen_from(placement)))
     own = {piece.joint + 1 for piece in figure}
@@ -48,14 +48,6 @@ def robot_parts(agent: Agent, figure: Sequence[FigurePiece] = ()) -> list[Part]:
                 body = model.names[joint] if joint else GROUND
                 parts.append(Part(body, f"{name}_{shape}", colour, mesh.seen_from(placement)))
     return parts
-
-
-def _base(model: pin.Model, data: pin.Data) -> Array:
-    """Return T_world_base (4, 4) of the link that the world carries."""
-    for frame in range(1, model.nframes):
-        if model.frames[frame].type == pin.FrameType.BODY and model.frames[frame].name != "world":
-            return np.asarray(data.oMf[frame].homogeneous)
-    return np.eye(4)
 
 
 def _shapes(link: Element) -> Iterator[tuple[str, Colour, Mesh]]:

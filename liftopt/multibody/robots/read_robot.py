@@ -31,12 +31,15 @@ NEEDED = {
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
-def read_robot(source: str | Path, *, arguments: Mapping[str, str] = NOTHING, y_up: bool = False) -> RobotDescription:
+def read_robot(
+    source: str | Path, *, arguments: Mapping[str, str] = NOTHING, y_up: bool = False, expand: bool = True
+) -> RobotDescription:
     """Return what a URDF or xacro file, or the text of a URDF, describes.
 
     Args:
         source: path of the file (xacro where its name ends so, or where it uses xacro), or the text itself.
         arguments: values of the ``xacro:arg`` of a xacro file.
+        expand: expand a file that uses xacro, which evaluates expressions; False takes it as a URDF.
         y_up: turn meshes that state that their y axis is up; as robots' programs do, that is left out else.
 
     Raises:
@@ -46,7 +49,7 @@ def read_robot(source: str | Path, *, arguments: Mapping[str, str] = NOTHING, y_
         return _described(source, TEXT, None, y_up)
     path = Path(source)
     text = _text(path)
-    if path.suffix == ".xacro" or ("xmlns:xacro" in text and "<xacro:" in text):
+    if expand and (path.suffix == ".xacro" or ("xmlns:xacro" in text and "<xacro:" in text)):
         text = expanded(path, arguments)
     return _described(text, str(path), path, y_up)
 
