@@ -121,5 +121,5 @@ def _held(asked: Robot) -> tuple[tuple[str, float], ...]:
     if asked.model == SAWYER:
         return ()
     known = known_robots().get(asked.model)
-    held = dict(known.locked if known is not None else {}) | dict(getattr(asked, "locked", {}))
+    held = dict(known.locked if known is not None else {}) | dict(asked.locked)
     return tuple((name, float(value)) for name, value in held.items())

@@ -5,10 +5,12 @@ Sawyer's P and D are those of the position controller in the manufacturer's own 
 (no i_clamp is given, which control_toolbox takes for 0), and the arm would end 33 mm off under the load of the paper's
 lift.
 
-Of no other arm here are the gains known. The rule: each joint alone, with the inertia that it has at the start of the
+Of no other arm here are the gains known. The rule: each joint alone, with the inertia M that it has at the start of the
 lift (the diagonal of the bare arm's mass matrix there, its tool included), swings at 5 Hz and is critically damped:
-P = w^2 M and D = 2 w M, with w = 2 pi 5 /s. That is on the soft side of industrial arms, so that what it says of the
-lag is rather too much. Dry friction is taken for 3 % of each joint's torque limit. All of that is estimate.
+P = w^2 M and D = 2 P / w, with w = 2 pi 5 /s. A URDF does not tell the rotors' inertia, which is most of what a wrist
+has; so P is at least the torque limit over 0.2 rad (0.1 m where a joint slides), D still 2 P / w, which is more than
+critical. Sawyer's own gains are like that: P is 5 to 33 limits per rad, D / P is 0.03 to 0.17 s, beside 5 and 0.064 s.
+Dry friction is taken for 3 % of each joint's torque limit. All of that is estimate.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ FRICTION = np.array([5.0, 2.0, 2.0, 0.5, 1.0, 0.5, 0.5])  # dry [Nm]
 VISCOUS = np.array([10.0, 5.0, 5.0, 1.0, 2.0, 1.0, 1.0])  # [Nm s/rad]
 RESET = 2.0  # I / P [1/s]; estimate
 FREQUENCY = 2.0 * np.pi * 5.0  # [rad/s]
-DAMPING_RATIO = 1.0
+WHOLE_TORQUE, WHOLE_FORCE = 0.2, 0.1  # [rad, m] off, at the latest: P alone asks for all that the joint has
 FRICTION_SHARE = 0.03  # of the torque limit
 
 
@@ -58,6 +60,6 @@ class Servo:
         """
         if joints.is_sawyer:
             return cls(STIFFNESS, DAMPING, FRICTION, VISCOUS)
-        friction = FRICTION_SHARE * np.abs(joints.effort).max(axis=0)
-        damping = 2.0 * DAMPING_RATIO * FREQUENCY * inertia
-        return cls(FREQUENCY**2 * inertia, damping, friction, np.zeros_like(inertia))
+        most = np.abs(joints.effort).max(axis=0)
+        stiffness = np.maximum(FREQUENCY**2 * inertia, most / np.where(joints.sliding, WHOLE_FORCE, WHOLE_TORQUE))
+        return cls(stiffness, 2.0 * stiffness / FREQUENCY, FRICTION_SHARE * most, np.zeros_like(inertia))

@@ -93,17 +93,17 @@ def _lines(trajectory: JointTrajectory, period: float, title: str) -> Iterator[s
     yield "    i = i + 1"
     yield "  end"
     yield "  if far > 0:"
-    yield f'    popup("A joint is more than {NEAR:g} rad from the start", "{title}", False, True, True)'
+    yield f'    popup("A joint is more than {NEAR:g} rad from the start", title="{title}", error=True, blocking=True)'
     yield "    halt"
     yield "  end"
-    yield f'  popup("Continue: the arm moves slowly to the start", "{title}", True, False, True)'
-    yield f"  movej(start, {RISE:g}, {SPEED:g})"
-    yield f'  popup("Continue: THE LIFT BEGINS AT ONCE", "{title}", True, False, True)'
+    yield f'  popup("Continue: the arm moves slowly to the start", title="{title}", warning=True, blocking=True)'
+    yield f"  movej(start, a={RISE:g}, v={SPEED:g})"
+    yield f'  popup("Continue: THE LIFT BEGINS AT ONCE", title="{title}", warning=True, blocking=True)'
     for position in trajectory.position[1:]:
-        yield f"  servoj({_list(position)}, 0, 0, period, lookahead, gain)"
+        yield f"  servoj({_list(position)}, t=period, lookahead_time=lookahead, gain=gain)"
     yield "  held = 0.0"
     yield f"  while held < {HOLD:g}:"
-    yield f"    servoj({ends[1]}, 0, 0, period, lookahead, gain)"
+    yield f"    servoj({ends[1]}, t=period, lookahead_time=lookahead, gain=gain)"
     yield "    held = held + period"
     yield "  end"
     yield f"  stopj({BRAKE:g})"
