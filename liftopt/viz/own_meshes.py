@@ -23,7 +23,6 @@ from liftopt.multibody.robots.read_robot import read_robot
 from liftopt.multibody.robots.robot_urdf import own_joint, turned
 from liftopt.scenario.build import agents_of
 from liftopt.scenario.robot import Robot
-from liftopt.scenario.robot_agents import chosen_of
 from liftopt.scenario.robot_defaults import SAWYER, is_file
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
@@ -59,10 +58,7 @@ def figures_of(solution: Solution, meshes: Meshes = False) -> Figures:
 def _known_chain(robot: Robot, agent: Agent) -> RobotChain | None:
     """Return the chain of a robot that is known by name, if it is installed and still the same."""
     try:
-        chosen = chosen_of(robot, agent.name)
-        chain = examined(
-            chosen.description, grasp_frame=chosen.grasp_frame, base=chosen.base_link, locked=chosen.locked
-        ).chain
+        chain = robot.chosen().examination().chain
     except InputError:
         return None
     return chain if is_of(chain, agent) else None
