@@ -6,8 +6,8 @@ import csv
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -126,17 +126,13 @@ def test_locked_joints_are_written_where_they_are_asked_for(
 
 @pytest.mark.parametrize("rate", ["125", "500"])
 def test_the_program_of_a_universal_robot_follows_the_solution(
-    arm_lift: Lifts, arm_folder: Folders, tmp_path: Path, rate: str
+    arm_lift: Lifts, arm_folder: Folders, ur_controller: Any, tmp_path: Path, rate: str
 ) -> None:
-    spec = spec_from_file_location("ur_controller", Path(__file__).with_name("ur_controller.py"))
-    assert spec is not None and spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
     words = ["--format", "urscript", "--servo-rate", rate]
     assert main(["export", str(arm_folder("ur10")), "--out", str(tmp_path / "out"), *words]) == DONE
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["trajectory.script"]
     fine = joint_trajectory(arm_lift("ur10"), 1000.0)
-    arm = module.Controller(fine.position[0])
+    arm = ur_controller.Controller(fine.position[0])
     arm.run((tmp_path / "out" / "trajectory.script").read_text("utf-8"))
     step = 1000 // int(rate)
     targets = np.array([one["q"] for one in arm.of("servoj")])
