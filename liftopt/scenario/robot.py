@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -25,7 +26,7 @@ class Tool(Section):
     length: Annotated[float, number("flange to grasp point, along the tool's direction", "m", 0.0, 0.6)] = 0.15
     mass: Annotated[float, number("mass of the gripper", "kg", 0.0, 10.0)] = 0.4
     direction: Annotated[
-        Direction | None, entry("axis of the grasp frame that points away from the robot; by default z")
+        Direction | None, entry("axis of the grasp frame that points away from the robot; by default the likely one")
     ] = None
     turn_deg: Annotated[float, number("how it is turned on the flange about its direction", "deg", -360.0, 360.0)] = 0.0
 
@@ -103,6 +104,24 @@ class Robot(Section):
     @classmethod
     def _with_model(cls, values: object) -> object:
         return with_model(values)
+
+    @classmethod
+    def from_urdf(cls, path: str | Path, **entries: Any) -> Robot:
+        """Return the robot of a URDF or xacro file, which is read and looked through now.
+
+        Args:
+            path: of the file.
+            entries: others of its section, ``grasp_frame="tool0"``, ``base=Pose(x=1.9, z=0.9)``.
+
+        Raises:
+            InputError: the file cannot be read or is no robot, its data are such that it cannot lift, or an entry is
+                wrong; it says which.
+        """
+        from liftopt.scenario.robot_agents import refuse_unusable  # with Pinocchio, which entries are checked without
+
+        robot = cls(model=str(Path(path).expanduser().absolute()), **entries)
+        refuse_unusable(robot)
+        return robot
 
     @property
     def height_key(self) -> str:

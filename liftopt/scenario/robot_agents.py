@@ -9,9 +9,12 @@ import pinocchio as pin
 
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.robots.chosen_robot import ChosenRobot, chosen_robot
+from liftopt.multibody.robots.examination import Examination, examined, refuse
 from liftopt.multibody.robots.given_limits import GivenLimits
+from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.robots.written_robot import with_joint_weights, written_robot
@@ -54,11 +57,12 @@ def agent_of_robot(scenario: Scenario, name: str, urdf: str | None = None) -> Ag
     if urdf is not None:
         return written_robot(urdf, name=name, posture=robot.posture, joint_weights=robot.joint_weights, sliding=sliding)
     chosen = chosen_of(robot, name)
+    placed = T_world_base_of(scenario, name)
     try:
         return robot_agent(
             chosen.description,
             name=name,
-            T_world_base=T_world_base_of(scenario, name),
+            T_world_base=placed @ rotation_z(-math.radians(chosen.front_deg)),
             grasp_frame=chosen.grasp_frame,
             base=chosen.base_link,
             tool_length=robot.tool.length,
@@ -70,6 +74,7 @@ def agent_of_robot(scenario: Scenario, name: str, urdf: str | None = None) -> Ag
             posture=robot.posture,
             joint_weights=robot.joint_weights,
             sliding=sliding,
+            ahead=heading(placed),
         )
     except InputError as error:
         raise _by_entry(error, name, chosen) from None
@@ -98,13 +103,31 @@ def chosen_of(robot: Robot, name: str) -> ChosenRobot:
         raise
 
 
+def refuse_unusable(robot: Robot) -> None:
+    """Raise ``InputError`` where a robot cannot be read, or its data are such that it cannot lift."""
+    found = examination_of(robot, "robot")
+    refuse(found, found.chain.description.source)
+
+
+def examination_of(robot: Robot, name: str) -> Examination:
+    """Return what is noticed about the data of an agent's robot; it is read. Raises ``InputError`` as ``examined``."""
+    chosen = chosen_of(robot, name)
+    return examined(
+        chosen.description,
+        grasp_frame=chosen.grasp_frame,
+        base=chosen.base_link,
+        locked=chosen.locked,
+        limits=given_limits(robot),
+    )
+
+
 def given_limits(robot: Robot) -> dict[str, GivenLimits]:
     """Return the limits that a scenario gives in place of a URDF's, by joint."""
     return {joint: GivenLimits(own.lower, own.upper, own.velocity, own.effort) for joint, own in robot.limits.items()}
 
 
 def T_world_base_of(scenario: Scenario, name: str) -> Array:
-    """Return the placement (4, 4) of a robot's base link: turned about its X, then Y, then Z of the world."""
+    """Return the placement (4, 4) of a robot's base, x where its front is: turned about X, then Y, then Z."""
     robot, stand = scenario.agents[name], stand_of(scenario, name)
     assert isinstance(robot, Robot)
     roll, pitch, yaw = (math.radians(turn) for turn in (robot.base.roll_deg, robot.base.pitch_deg, stand.yaw_deg))

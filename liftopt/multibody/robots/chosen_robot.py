@@ -11,8 +11,6 @@ from liftopt.multibody.robots.description import RobotDescription
 from liftopt.multibody.robots.known_robot import KnownRobot
 from liftopt.multibody.robots.read_robot import NOTHING, read_robot
 
-ALONG = "z"  # of the grasp frame, where nothing else is said
-
 
 @dataclass(frozen=True)
 class ChosenRobot:
@@ -23,7 +21,8 @@ class ChosenRobot:
         known: it, where it is known by name.
         base_link, grasp_frame: names of links; None leaves the root, or the frame that is proposed.
         locked: positions of joints that are held [rad, m].
-        direction: axis of the grasp frame along which a tool extends.
+        direction: axis of the grasp frame along which a tool extends; None leaves the likely one.
+        front_deg: where its front is, about z from x of its base [deg].
     """
 
     description: RobotDescription
@@ -31,7 +30,8 @@ class ChosenRobot:
     base_link: str | None = None
     grasp_frame: str | None = None
     locked: Mapping[str, float] = field(default_factory=dict)
-    direction: str = ALONG
+    direction: str | None = None
+    front_deg: float = 0.0
 
 
 def chosen_robot(
@@ -59,8 +59,8 @@ def chosen_robot(
     known = known_or_path(model)
     if isinstance(known, Path):
         description = read_robot(known, arguments=arguments)
-        return ChosenRobot(description, None, base_link, grasp_frame, dict(locked or {}), direction or ALONG)
-    own = known.direction if grasp_frame in (None, known.grasp_frame) else ALONG
+        return ChosenRobot(description, None, base_link, grasp_frame, dict(locked or {}), direction)
+    own = known.direction if grasp_frame in (None, known.grasp_frame) else None
     return ChosenRobot(
         known.description(),
         known,
@@ -68,4 +68,5 @@ def chosen_robot(
         grasp_frame or known.grasp_frame,
         {**known.locked, **(locked or {})},
         direction or own,
+        known.front_deg if base_link in (None, known.base) else 0.0,
     )

@@ -104,6 +104,13 @@ def examined(
     return Examination(chain, tuple(sorted(found, key=lambda one: SEVERITIES.index(one.severity))))
 
 
+def refuse(found: Examination, source: str) -> None:
+    """Raise ``InputError`` for the gravest finding for which a robot cannot lift, if there is one."""
+    for finding in found.findings:
+        if finding.severity == "refused" or finding.code == AMBIGUOUS:
+            raise finding.refusal(source)
+
+
 def _proposed(description: RobotDescription, base: str) -> tuple[str, DataFinding]:
     """Return the likeliest grasp frame, and the finding that says why."""
     candidates = grasp_candidates(description, base)

@@ -10,7 +10,22 @@ from liftopt.multibody.robots.sawyer_shapes import TOOL_RADIUS
 from liftopt.types import Array
 
 UNTURNED = "z"
+# Nearer to the last joint than this, or less plainly along one axis, where a frame is does not say where it points [m].
+SHORTEST_LEVER, PLAINLY = 0.005, 0.9
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def likely_direction(T_last_frame: Array) -> str:
+    """Return along which axis of a grasp frame a hand is likely to point: away from the joint before it.
+
+    Args:
+        T_last_frame: (4, 4) the frame in that of the last link, whose origin is on the last joint's axis.
+    """
+    lever = T_last_frame[:3, :3].T @ T_last_frame[:3, 3]
+    number, length = int(np.abs(lever).argmax()), float(np.linalg.norm(lever))
+    if length < SHORTEST_LEVER or abs(lever[number]) < PLAINLY * length:
+        return UNTURNED
+    return ("" if lever[number] > 0.0 else "-") + "xyz"[number]
 
 
 def along(direction: str, turn: float = 0.0) -> Array:

@@ -13,6 +13,17 @@ from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.read_robot import read_robot
 from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_agent import robot_agent
+from liftopt.scenario.build import agents_of
+from liftopt.scenario.model import scenario_from_dict
+
+LIFT = {
+    "schema": 2,
+    "duration": 2.0,
+    "agents": {"anna": {"kind": "person", "stature": 1.7, "mass": 60.0, "sex": "female"}},
+    "object": {"name": "box", "mass": 1.0, "depth": 0.3, "width": 0.3, "height": 0.1},
+    "task": {"standing_distance": 1.0, "start": {"x": 0.5, "z": 0.9}, "end": {"x": 0.5, "z": 1.1}},
+    "objective": {"preset": "paper"},
+}
 
 needs_robots = pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed")
 # Robots whose grasp frame has its z axis along the fingers.
@@ -61,6 +72,19 @@ def test_a_robot_on_a_wall_reaches_out_level_too():
     tip = data.oMf[agent.model.getFrameId("robot_grasp")]
     assert tip.rotation[:, 2] @ [-1.0, 0.0, 0.0] > np.cos(np.radians(3.0))
     assert tip.translation[0] < 1.6
+
+
+@needs_robots
+@pytest.mark.parametrize("name", ["icub_left", "so100", "talos_right", "centauro_left"])
+def test_a_known_robot_turns_its_front_to_the_person_and_its_hand_out(name):
+    """These have their front, or the axis along the hand, elsewhere than x of the base and z of the frame."""
+    robot = {"kind": "robot", "model": name, "base": {"x": 1.0, "z": 0.9}}
+    agent = agents_of(scenario_from_dict(LIFT | {"agents": {**LIFT["agents"], "ben": robot}}))[1]
+    data = agent.model.createData()
+    pin.framesForwardKinematics(agent.model, data, agent.posture)
+    tip = data.oMf[agent.model.getFrameId("ben_grasp")]
+    assert tip.rotation[:, 2] @ [-1.0, 0.0, 0.0] > np.cos(np.radians(5.0))
+    assert tip.translation[0] < 0.9
 
 
 def test_a_base_faces_along_its_x_axis_or_away_from_its_wall():
