@@ -28,7 +28,7 @@ from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 
 ROBOTS = ("ur10", "panda", "tiago", "tiago_lifting")
-TOOL = 0.1  # [m]
+TOOL = {"ur10": (0.0, 0.0, 0.1), "panda": (0.0, 0.0, 0.1), "tiago": (0.1, 0.0, 0.0), "tiago_lifting": (0.1, 0.0, 0.0)}
 HELD = {"tiago": {"torso_lift_joint": 0.2}}
 Lifts = Callable[[str], Solution]
 Folders = Callable[[str], Path]
@@ -57,7 +57,7 @@ def test_the_robots_own_urdf_puts_the_hand_where_the_solution_has_it(arm_lift: L
         for joint, value in HELD.get(name, {}).items():
             q[model.joints[model.getJointId(joint)].idx_q] = value
         pin.framesForwardKinematics(model, data, q)
-        found = world * data.oMf[base].actInv(data.oMf[frame]).act(np.array([0.0, 0.0, TOOL]))
+        found = world * data.oMf[base].actInv(data.oMf[frame]).act(np.array(TOOL[name]))
         np.testing.assert_allclose(found, hand, rtol=0, atol=1e-6)
 
 
