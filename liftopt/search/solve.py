@@ -87,7 +87,7 @@ def search(session: Session) -> Found:
         if optima and (found := refine_mesh(session, optima, spline.intervals)) is not None:
             return found
         if (found := explain_blocked(session, spline)) is not None:
-            return found if found.best.usable else search_wider(session) or found
+            return found if found.best.usable or session.blocked_at_rest else search_wider(session) or found
         starts = guesses.starts(problem, options.starts)
     session.finish()
     session.begin_solving()
