@@ -18,14 +18,14 @@ from .face.replanner import Replanner as Replanner
 from .multibody.trajectory import AgentTrajectory as AgentTrajectory
 from .multibody.trajectory import ObjectTrajectory as ObjectTrajectory
 from .scenario.agents import Person as Person
-from .scenario.agents import Pose as Pose
-from .scenario.agents import Robot as Robot
-from .scenario.agents import Tool as Tool
 from .scenario.box import Box as Box
 from .scenario.file import shipped_scenarios as shipped_scenarios
 from .scenario.model import Scenario as Scenario
 from .scenario.model import load_scenario as load_scenario
 from .scenario.obstacles import Obstacle as Obstacle
+from .scenario.robot import Pose as Pose
+from .scenario.robot import Robot as Robot
+from .scenario.robot import Tool as Tool
 from .scenario.settings import Limits as Limits
 from .scenario.settings import Objective as Objective
 from .scenario.settings import Refine as Refine

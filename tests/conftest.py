@@ -19,6 +19,7 @@ from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import LiftTask
 from liftopt.multibody.agent import Agent, Grasp, LiftedObject
+from liftopt.multibody.joint_units import TURNS
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.placement import facing
 from liftopt.multibody.robots.sawyer import sawyer_agent
@@ -216,6 +217,8 @@ def _agent(name: str, kind: str, joints: int, force: np.ndarray, grasp: tuple[fl
         kind=kind,
         joint_names=names,
         moving=np.array([False] * 3 + [True] * joints),
+        sliding=np.array([True] * 3 + [False] * joints),
+        units=(TURNS,) * joints,
         q=q,
         tau=tau,
         limits=limits,

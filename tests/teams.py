@@ -76,11 +76,30 @@ TWO_WHOLE = SQUAT | {
     "task": {"standing_distance": 1.3, **TASK},
 }
 
+
+def _with_arm(model: str, x: float, z: float, **more: Any) -> dict[str, Any]:
+    """Return the lift of a person and a robot whose model is in example-robot-data."""
+    arm = {"kind": "robot", "model": model, "base": {"x": x, "z": z}, "tool": {"length": 0.1, "mass": 0.5}}
+    return {
+        "schema": 2,
+        "name": model,
+        "duration": 2.0,
+        "agents": {"human": {"kind": "person", "stature": 1.75, "mass": 75.0, "sex": "male"}, "arm": arm | more},
+        "object": {"name": "table", "mass": 2.0, "depth": 0.45, "width": 0.31, "height": 0.02},
+        "task": {"standing_distance": x, **TASK},
+        "objective": {"preset": "paper"},
+    }
+
+
 TEAMS: dict[str, dict[str, Any]] = {
     "two_people": TWO_PEOPLE,
     "two_robots": TWO_ROBOTS,
     "squat": SQUAT,
     "two_whole": TWO_WHOLE,
+    "ur10": _with_arm("ur10", 1.6, 0.6),
+    "panda": _with_arm("panda", 1.4, 0.6),
+    "tiago_lifting": _with_arm("tiago_lifting", 1.5, 0.0),
+    "tiago": _with_arm("tiago", 1.5, 0.0, locked={"torso_lift_joint": 0.2}),
 }
 # How far those with legs bend their knees at the start and at the end of a lift from the floor [deg].
 KNEES = (115.0, 15.0)
@@ -98,7 +117,8 @@ def made(name: str, pattern: Solution) -> Team:
 
     Args:
         name: of the team: ``"two_people"``, ``"two_robots"`` (and a person), ``"squat"`` (a person with legs, alone),
-            ``"two_whole"`` (two with legs, one of whom holds with one hand).
+            ``"two_whole"`` (two with legs, one of whom holds with one hand), ``"ur10"``, ``"panda"``, ``"tiago"`` or
+            ``"tiago_lifting"`` (a person and that robot).
         pattern: whose solver's figures are borrowed.
     """
     scenario = scenario_from_dict(TEAMS[name])

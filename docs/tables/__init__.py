@@ -18,6 +18,7 @@ GALLERY = (
     "whole_person",
     "two_people",
     "two_robots",
+    "robots_alone",
 )
 
 
@@ -35,6 +36,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 def write_tables(folder: Path) -> None:
     """Write every table as a Markdown file into a folder, which is made, for pages to include."""
     from tables.commands import commands
+    from tables.faulty_robots import faulty_robots
     from tables.json_keys import json_keys
     from tables.names import urdf_names
     from tables.presets import presets
@@ -46,7 +48,7 @@ def write_tables(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     told = (
         scenario_keys, presets, variables, attributes, solution_attributes, json_keys, urdf_names, rooms, commands,
-        terminal,
+        terminal, faulty_robots,
     )  # fmt: skip
     for make in told:
         (folder / f"{make.__name__}.md").write_text(make(), encoding="utf-8")

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from liftopt.assessment.who import Who
+from liftopt.multibody.joint_units import JointUnits
 from liftopt.multibody.trajectory import AgentTrajectory, limit_share
 from liftopt.solution.finding import CAUTION, INFO, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
@@ -57,7 +58,7 @@ def joint_findings(fine: Solution, agent: AgentTrajectory, words: Words) -> Iter
 
 
 def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
-    share, tau = limit_share(agent), agent.tau[:, agent.moving]
+    share, tau, units = limit_share(agent), agent.tau[:, agent.moving], agent.units
     names, peaks = agent.moving_joints, share.max(axis=0)
     for row in map(int, np.argsort(-peaks)):
         k, name = int(np.argmax(share[:, row])), names[row]
@@ -74,10 +75,10 @@ def _torques(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[F
         yield Finding(
             f"{words.who.subject}.{words.torque}",
             severity,
-            f"{joint} at {percent(peak)} % of its {words.limit}",
-            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} Nm at {fine.time[k]:.2f} s, {percent(peak)} % of "
-            f"its {words.limit} of {limit:.3g} Nm{beyond}{long}.",
-            agent.name, name, float(fine.time[k]), abs(float(tau[k, row])), float(limit), "Nm",
+            f"{joint} at {percent(peak)} % of its {_limit(words, units[row])}",
+            f"{_first(joint, words)} takes {abs(tau[k, row]):.3g} {units[row].tau} at {fine.time[k]:.2f} s, "
+            f"{percent(peak)} % of its {_limit(words, units[row])} of {limit:.3g} {units[row].tau}{beyond}{long}.",
+            agent.name, name, float(fine.time[k]), abs(float(tau[k, row])), float(limit), units[row].tau,
             words.torque_sources.get((_short(agent, name), sign), words.source),
         )  # fmt: skip
 
@@ -86,8 +87,8 @@ def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
     share = np.abs(agent.v[:, agent.moving]) / agent.limits.velocity
     largest = int(np.argmax(share.max(axis=0)))
     for row, name in enumerate(agent.moving_joints):
-        k = int(np.argmax(share[:, row]))
-        peak, limit = float(share[k, row]), float(np.degrees(agent.limits.velocity[row]))
+        k, unit = int(np.argmax(share[:, row])), agent.units[row]
+        peak, limit = float(share[k, row]), float(agent.limits.velocity[row] * unit.factor)
         if peak < 1 - AT_LIMIT and row != largest:
             continue
         joint = _joint(agent, name, 0, words)
@@ -97,34 +98,41 @@ def _speeds(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Fi
             f"{words.who.subject}.speed",
             severity,
             f"{joint} at {percent(peak)} % of its speed limit",
-            f"{_first(joint, words)} moves at up to {peak * limit:.0f} deg/s at {fine.time[k]:.2f} s, {percent(peak)} "
-            f"% of its speed limit{_along(part)}.",
+            f"{_first(joint, words)} {unit.move} at up to {peak * limit:.0f} {unit.shown}/s at {fine.time[k]:.2f} s, "
+            f"{percent(peak)} % of its speed limit{_along(part)}.",
             agent.name, name, float(fine.time[k]), peak * float(agent.limits.velocity[row]),
-            float(agent.limits.velocity[row]), "rad/s", words.source,
+            float(agent.limits.velocity[row]), unit.v, words.source,
         )  # fmt: skip
 
 
 def _angles(fine: Solution, agent: AgentTrajectory, words: Words) -> Iterator[Finding]:
-    q, low, high = np.degrees(agent.q[:, agent.moving]), *np.degrees((agent.limits.q_lower, agent.limits.q_upper))
-    for row, name in enumerate(agent.moving_joints):
+    factor, limits = np.array([unit.factor for unit in agent.units]), agent.limits
+    q, low, high = (values * factor for values in (agent.q[:, agent.moving], limits.q_lower, limits.q_upper))
+    for row, (name, unit) in enumerate(zip(agent.moving_joints, agent.units, strict=True)):
         margin = AT_LIMIT * (high[row] - low[row])
-        for sign, limit, beyond in ((-1, low[row], low[row] - q[:, row]), (1, high[row], q[:, row] - high[row])):
+        ends = (limits.q_lower[row], low[row] - q[:, row]), (limits.q_upper[row], q[:, row] - high[row])
+        for sign, (limit, beyond) in zip((-1, 1), ends, strict=True):
             k, at = int(np.argmax(beyond)), beyond >= -margin
             if not at.any():
                 continue
             joint, exceeded = _joint(agent, name, sign, words), bool(beyond[k] > margin)
             part = float(at.mean())
             severity = WARNING if exceeded else CAUTION if part >= ALL_ALONG else INFO
-            where = f"{beyond[k]:.2g} deg beyond" if exceeded else "at"
+            where = f"{beyond[k]:.2g} {unit.shown} beyond" if exceeded else "at"
             yield Finding(
                 f"{words.who.subject}.range",
                 severity,
                 f"{joint} {where} the end of its range",
-                f"{_first(joint, words)} comes to {round(q[k, row], 1) + 0.0:.1f} deg, {where} the end of its "
+                f"{_first(joint, words)} comes to {round(q[k, row], 1) + 0.0:.1f} {unit.shown}, {where} the end of its "
                 f"range{_along(part)}.",
-                agent.name, name, float(fine.time[k]), float(np.radians(q[k, row])), float(np.radians(limit)), "rad",
+                agent.name, name, float(fine.time[k]), float(agent.q[k, agent.moving][row]), float(limit), unit.q,
                 words.range_sources.get((_short(agent, name), sign), words.source),
             )  # fmt: skip
+
+
+def _limit(words: Words, units: JointUnits) -> str:
+    """Return whose limit on effort it is; a joint that slides has one on force."""
+    return words.limit.replace("torque", units.effort)
 
 
 def _along(part: float) -> str:

@@ -14,7 +14,7 @@ from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.robots import sawyer_description
 from liftopt.multibody.sources import Source
 from liftopt.multibody.trajectory import GRAVITY, AgentTrajectory
-from liftopt.scenario.agents import Robot
+from liftopt.scenario.robot import Robot
 from liftopt.solution.finding import CAUTION, INFO, ROBOT, WARNING, Finding, percent
 from liftopt.solution.solution import Solution
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from liftopt.multibody.agent import Agent
-from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.agents import Person
 from liftopt.scenario.meant import KINDS
+from liftopt.scenario.robot import Robot
 from liftopt.solution.finding import PERSON, ROBOT
 
 SUBJECTS = {"person": PERSON, "robot": ROBOT}

@@ -61,11 +61,11 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
     """Return the unweighted integrals of the objective by the trapezoid rule over the times of a motion.
 
     Keys: each agent's name (squared torques of its moving joints, eq. 10, or squared shares of their limits in the
-    torques' directions, as the task has it), ``"acceleration"`` (squared accelerations of those joints and of the
-    object's six coordinates, times the task's pace) and ``"force"`` (squared grasp forces, and squared moments over the
-    squared breadth of the hand); with shares, or where they have a weight, ``"range"`` (what joint angles cost, see
-    ``Comfort``) and ``"tilt"`` (the object's squared roll and pitch in units of ``TILT``); where it has a weight
-    ``"spine"`` (squared shares in the load on agents' spines, see ``Agent.spine``).
+    torques' directions, as the task has it, times ``Agent.joint_weights``), ``"acceleration"`` (squared accelerations
+    of those joints and of the object's six coordinates, times the task's pace) and ``"force"`` (squared grasp forces,
+    and squared moments over the squared breadth of the hand); with shares, or where they have a weight, ``"range"``
+    (what joint angles cost, see ``Comfort``) and ``"tilt"`` (the object's squared roll and pitch in units of
+    ``TILT``); where it has a weight ``"spine"`` (squared shares in the load on agents' spines, see ``Agent.spine``).
     """
     task = problem.task
     step = np.diff(motion.time)
@@ -73,7 +73,11 @@ def objective_terms(problem: Problem, motion: Motion) -> dict[str, float]:
     weights[:-1] += step / 2
     weights[1:] += step / 2
     torques = {a.name: limit_share(a) if task.shares else a.tau[:, a.moving] for a in motion.agents}
-    terms = {name: float(weights @ (tau**2).sum(axis=1)) for name, tau in torques.items()}
+    squares = {name: tau**2 for name, tau in torques.items()}
+    for agent in problem.team.agents:
+        if agent.joint_weights is not None:
+            squares[agent.name] *= agent.joint_weights
+    terms = {name: float(weights @ square.sum(axis=1)) for name, square in squares.items()}
     acceleration = sum((agent.a[:, agent.moving] ** 2).sum(axis=1) for agent in motion.agents)
     acceleration = acceleration + (motion.object.pose_acceleration**2).sum(axis=1)
     contact = [

@@ -64,6 +64,8 @@ def agent_weights(task: LiftTask, i: int, agent: Agent, n_y: int, posture_weight
         variable[first : first + FORCE_SIZE] = task.force_weight * period
         variable[first + FORCE_SIZE : first + room] = task.force_weight * period / grasp.breadth**2
     effort = np.full(n, task.agent_weights[i] * period)
+    if agent.joint_weights is not None:
+        effort = effort * agent.joint_weights
     below, above = (effort / unit**2 for unit in torque_units(agent.limits)) if task.shares else (effort, effort)
     if agent.spine is not None and task.spine_weight:
         below, above = (

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from liftopt.collocation.arm_dynamics import ArmTopology, arm_functions
 from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
 from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.constraints import Constraints, build_constraints
@@ -237,7 +238,9 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
     requests: list[tuple[Any, Topology]] = []
     for agent in agents:
         model = agent.reduced()
-        if agent.pushes_at_a_point:
+        if agent.shares_kernels:
+            requests.append((arm_functions, ArmTopology.holding(model, agent.hands[0], agent.grasps[0].R_hand_object)))
+        elif agent.pushes_at_a_point:
             requests.append((agent_functions, Topology.of(model, agent.hands)))
         elif agent.is_simple:
             grips = [grasp.R_hand_measured for grasp in agent.grasps]
@@ -254,8 +257,8 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
         builder = object_functions
     else:
         builder, held = wrench_object_functions, WrenchTopology.holding(lifted.model, lifted.grasp_frames)
-    # Hands may be anywhere on the object.
-    requests.append((builder, held if all(agent.is_simple for agent in agents) else held_anywhere(held)))
+    at_usual_places = all(agent.is_simple and not agent.shares_kernels for agent in agents)
+    requests.append((builder, held if at_usual_places else held_anywhere(held)))
     return requests
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from liftopt.collocation.arm_poses import ArmPoseTopology, arm_pose_functions
 from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.dynamics import Topology
 from liftopt.collocation.pose_kernels import (
@@ -148,10 +149,12 @@ class SeparatingPlanes:
 def pose_request(
     agents: Sequence[Agent], lifted: LiftedObject, part: int, joints: tuple[int, ...]
 ) -> tuple[Any, PoseTopology]:
-    """Return what to generate the kernel of an agent's or the object's poses from."""
+    """Return what to generate the kernel of the poses of an agent or the object from: of these joints at least."""
     if part == len(agents):
         return object_pose_functions, parameter_free(lifted.model)
     agent, model = agents[part], agents[part].reduced()
+    if agent.shares_kernels:
+        return arm_pose_functions, ArmPoseTopology.of_links(model)
     if agent.stance is None:
         return pose_functions, PoseTopology.moving(model, joints)
     return standing_pose_functions, StandingPoseTopology.standing(model, joints, agent.T_world_base)
@@ -181,6 +184,6 @@ def pose_parts(
     loaded = load_kernels([requests[i] for i in missing], progress) if missing else []
     known |= {signatures[i]: kernel for i, kernel in zip(missing, loaded, strict=True)}
     return tuple(
-        PosePart(part, own, *request, known[signature])
-        for (part, own), request, signature in zip(wanted, requests, signatures, strict=True)
+        PosePart(part, request[1].joints, *request, known[signature])
+        for (part, _), request, signature in zip(wanted, requests, signatures, strict=True)
     )

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from liftopt.lab.comparison.experiment import Experiment
+    from liftopt.lab.robot.robot_record import RobotRecord
     from liftopt.solution.solution import Solution
 
 WIDEST = 27  # of a quantity's name; the tables stand below each other
@@ -89,7 +90,6 @@ def _experiment(args: argparse.Namespace, solution: Solution) -> Experiment:
     from liftopt.lab.comparison.experiment import experiment
     from liftopt.lab.forces.force_file import read_forces
     from liftopt.lab.mocap.recorded_file import load_recorded
-    from liftopt.lab.robot.robot_record import read_robot_record
     from liftopt.multibody.bounds import checked_number
 
     calibration, unloaded = calibration_of(args), unloaded_of(args)
@@ -101,11 +101,21 @@ def _experiment(args: argparse.Namespace, solution: Solution) -> Experiment:
         solution,
         mocap=[load_recorded(path) for path in args.mocap],
         forces=[one for path in args.forces for one in read_forces(Path(path), calibration, unloaded)],
-        robot=[read_robot_record(Path(path)) for path in args.robot],
+        robot=_robot_records(args, solution),
         forces_lift=span,
         person=args.person,
         robot_name=args.robot_name,
     )
+
+
+def _robot_records(args: argparse.Namespace, solution: Solution) -> list[RobotRecord]:
+    from liftopt.lab.robot.joint_map import JointMap
+    from liftopt.lab.robot.robot_record import read_robot_record
+
+    if not args.robot:
+        return []
+    joints = JointMap.of(solution, args.robot_name, "--robot-name")
+    return [read_robot_record(Path(path), joints) for path in args.robot]
 
 
 def summary_dict(found: Experiment) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""``liftopt dry-run``: the exported motion on a simulated Sawyer."""
+"""``liftopt dry-run``: the exported motion on a simulated robot."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ def add_dry_run_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "dry-run",
         help="simulate what the robot would really do",
-        description="Simulate Sawyer under its trajectory action server in MuJoCo: how far it is off and late, the "
-        "torques, and where the person's hand would be led. Trials differ by friction, load and the noise of the "
-        "sensors, and are written as bags that a robot could have recorded. The arm's inner loops are not published; "
-        "what is assumed stands in liftopt/lab/robot/simulated_arm.py.",
+        description="Simulate the robot in MuJoCo, Sawyer under its trajectory action server, any other arm under a "
+        "trajectory controller of positions: how far it is off and late, the torques, and where the person's hand "
+        "would be led. Trials differ by friction, load and the noise of the sensors, and are written as bags that a "
+        "robot could have recorded. The arm's inner loops are not published; what is assumed stands in "
+        "liftopt/lab/robot/servo.py.",
         allow_abbrev=False,
     )
     parser.add_argument("result", metavar="RESULT", help="a result folder, or its solution.nc")
@@ -29,8 +30,8 @@ def add_dry_run_parser(commands: Any) -> None:
     parser.add_argument(
         "--mode",
         choices=MODES,
-        default="velocity",
-        help="of the action server; torque is a client that streams the solved torques (default: %(default)s)",
+        help="of Sawyer's action server; torque is a client that streams the solved torques (default: velocity; any "
+        "other robot has position)",
     )
     parser.add_argument("--trials", type=int, default=3, metavar="N", help="how many (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what differs between trials (default: 0)")
@@ -59,15 +60,18 @@ def dry_run_text(args: argparse.Namespace, progress: Progress | None = None) -> 
     from liftopt.lab.robot.dry_run import dry_run
     from liftopt.lab.robot.dry_run_files import write_dry_run
     from liftopt.lab.robot.dry_run_summary import reach_to_others, summarised, summary_text
+    from liftopt.lab.robot.joint_map import JointMap
 
     solution, out = load_result(args.result), Path(args.out)
     with new_folder("--out", out) as folder:
         robot = the_robot(solution, args.robot).name
-        run = dry_run(solution, args.mode, goal_time, trials, seed, progress, robot)
+        joints = JointMap.of(solution, robot)
+        mode: Any = args.mode or ("velocity" if joints.is_sawyer else "position")
+        run = dry_run(solution, mode, goal_time, trials, seed, progress, robot)
         summary = summarised(run, reach_to_others(solution.scenario, robot))
         names = write_dry_run(run, summary, folder)
     others = [agent.kind for agent in solution.agents if agent.name != robot]
     hands = sum(len(agent.grasps) for agent in solution.agents if agent.name != robot)
     alone = "The person's hand is" if hands == 1 else "The middle of the person's hands is"
     followers = alone if others == ["person"] else "What the others hold is"
-    return f"{summary_text(summary, followers)}\nWritten to {out}: {', '.join(names)}\n"
+    return f"{summary_text(summary, followers, list(joints.sliding))}\nWritten to {out}: {', '.join(names)}\n"

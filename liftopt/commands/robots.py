@@ -42,6 +42,11 @@ def add_robots_parser(commands: Any) -> None:
     parser.add_argument(
         "--arg", action="append", default=[], metavar="NAME=VALUE", help="an argument of a xacro file; repeatable"
     )
+    parser.add_argument(
+        "--scenario",
+        metavar="FILE",
+        help="write a scenario to start from, with a stand that reaches (a new file)",
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=robots)
 
@@ -53,7 +58,7 @@ def robots(args: argparse.Namespace) -> int:
         InputError: there is no such robot, its file is no robot, or an option is wrong.
     """
     if args.robot is None:
-        for option in ("grasp_frame", "base", "lock", "arg"):
+        for option in ("grasp_frame", "base", "lock", "arg", "scenario"):
             if value := getattr(args, option):
                 raise InputError(f"--{option.replace('_', '-')}", value, "needs a ROBOT")
         write(_list_json() if args.json else captured(_print_list))
@@ -63,11 +68,15 @@ def robots(args: argparse.Namespace) -> int:
     known = known_or_path(args.robot)
     found = _examined(known, args)
     status = NOT_SOLVED if found.refused else DONE
+    written = _written_scenario(args, known, found) if args.scenario and status == DONE else None
     if args.json:
         name = None if isinstance(known, Path) else known.name
-        write(json.dumps({"known_as": name, **found.plain(), "exit_status": status}, indent=2, allow_nan=False) + "\n")
+        told = {"known_as": name, **found.plain(), "scenario": written, "exit_status": status}
+        write(json.dumps(told, indent=2, allow_nan=False) + "\n")
     else:
         write(captured(lambda console: _print(found, known, console)))
+        if written is not None:
+            write(f"Written to {written}; liftopt solve {written} solves it\n")
     return status
 
 
@@ -86,6 +95,32 @@ def _examined(known: KnownRobot | Path, args: argparse.Namespace) -> Examination
         return examined_robot(known)
     description = read_robot(known, arguments=dict(_pairs("--arg", args.arg)))
     return examined(description, grasp_frame=args.grasp_frame, base=args.base, locked=locked)
+
+
+def _written_scenario(args: argparse.Namespace, known: KnownRobot | Path, found: Examination) -> str:
+    """Write a scenario of the robot as it was examined, and return where it is."""
+    import tomli_w
+
+    from liftopt.commands.terminal import progress_line
+    from liftopt.files.new_file import write_new
+    from liftopt.search.first_scenario import first_scenario
+
+    chain = found.chain
+    model = str(known.absolute()) if isinstance(known, Path) else known.name
+    entries = {"model": model, "grasp_frame": args.grasp_frame, "base_link": args.base}
+    tables: dict[str, Any] = (
+        {"locked": {name: float(value) for name, value in _pairs("--lock", args.lock)}} if args.lock else {}
+    )
+    tables |= {"arguments": dict(_pairs("--arg", args.arg))} if args.arg else {}
+    robot = {key: value for key, value in entries.items() if value} | tables
+    with progress_line() as progress:
+        made = first_scenario(robot, Path(args.scenario).stem, progress)
+    head = (
+        f"# A person and {chain.description.name} lift a box: a scenario to start from.\n"
+        "# SI units; radians unless the key says otherwise.\n\n"
+    )
+    write_new("--scenario", Path(args.scenario), head + tomli_w.dumps(made))
+    return str(args.scenario)
 
 
 def _pairs(option: str, words: list[str]) -> list[tuple[str, str]]:

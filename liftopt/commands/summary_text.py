@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from liftopt.assessment.joints import NEAR_LIMIT
+from liftopt.multibody.joint_units import TURNS, units_of
 
 WIDTH = 80
 BLOCKS = "▁▂▃▄▅▆▇█"
@@ -63,17 +64,19 @@ def _joints(agent: str, rows: list[dict[str, Any]]) -> Table:
         caption="between the knots too; share: largest torque / limit in its direction; ! from 80%",
     )
     for row in rows:
-        largest = row["largest_share_of_limit"]
+        largest, unit = row["largest_share_of_limit"], units_of("peak_force_N" in row)
         remarks = ["!"] if largest is not None and largest >= NEAR_LIMIT else []
-        if row["largest_share_at_s"] != row["peak_torque_at_s"]:
+        peak, turns = f"peak_{unit.effort}", unit is TURNS
+        if row["largest_share_at_s"] != row[f"{peak}_at_s"]:
             remarks.append(f"at {_fixed(row['largest_share_at_s'], 2)}")
         table.add_row(
             escape(f"{row['joint']} {row['meaning']}".rstrip()),
-            _fixed(row["peak_torque_Nm"], 2, sign=True),
-            _fixed(row["peak_torque_at_s"], 2),
+            _fixed(row[f"{peak}_{unit.tau}"], 2, sign=True) + ("" if turns else f" {unit.tau}"),
+            _fixed(row[f"{peak}_at_s"], 2),
             _percent(largest) + "%",
             " ".join(remarks),
-            f"{_fixed(row['q_min_deg'], 1)}..{_fixed(row['q_max_deg'], 1)}",
+            "..".join(_fixed(row[f"q_{end}_{unit.shown}"], 1) for end in ("min", "max"))
+            + ("" if turns else f" {unit.shown}"),
         )
     return table
 

@@ -31,6 +31,8 @@ def integrand(agents: Sequence[Agent], task: LiftTask, at: Coordinates, points: 
     for agent, weight, n in zip(agents, task.agent_weights, at.joints, strict=True):
         own, limits = slice(first, first + n), agent.limits
         used = _shares(tau[own, :], -limits.tau_lower, limits.tau_upper) if task.shares else tau[own, :]
+        if agent.joint_weights is not None:
+            used *= ca.repmat(ca.sqrt(ca.DM(agent.joint_weights)), 1, used.size2())
         total += weight * ca.sum1(used**2)
         if agent.spine is not None and task.spine_weight:
             below, above = (ca.repmat(ca.DM(side), 1, tau.size2()) for side in agent.spine)

@@ -15,6 +15,7 @@ from liftopt.crosscheck.mujoco_forward import BANDWIDTH, WINDOW, Deviation, Simu
 from liftopt.crosscheck.transcriptions import mesh_study
 from liftopt.crosscheck.transcriptions import render as render_study
 from liftopt.errors import InputError
+from liftopt.multibody.joint_units import SLIDES, TURNS
 from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.checks import Check
 from liftopt.solution.solution import Solution
@@ -22,7 +23,7 @@ from liftopt.types import Progress
 
 INVERSE_DYNAMICS = 1e-6  # relative
 # A simulation keeps the grasps together at all times, a solution at its knots: bounds are for closure to 1 mm between.
-JOINT, POSITION, TURN = 0.02, 2e-3, 0.02  # [rad], [m], [rad]
+JOINT, POSITION, TURN = 0.02, 2e-3, 0.02  # [rad; m of a joint that slides], [m], [rad]
 GRASP_FORCE = 0.1  # of the largest
 FEEDBACK = 0.1  # of a joint's torque limit
 BOOKS, PANELS = 1e-6, 8  # relative, panels of Simpson's rule between two knots
@@ -80,23 +81,28 @@ def _inverse(solution: Solution) -> Iterator[Check]:
 def _forward(solution: Solution) -> Iterator[Check]:
     simulation, name = Simulation(solution), solution.object.name
     windows, whole = simulation.windows(), simulation.follow()
+    units = [unit for agent in solution.agents for unit in agent.units]
+    unit = " or ".join(dict.fromkeys(each.q for each in units))
     where = f"{windows.count} windows of {1e3 * WINDOW:g} ms"
-    yield from _deviation(f"MuJoCo open loop, {name}", windows.deviation, where)
+    yield from _deviation(f"MuJoCo open loop, {name}", windows.deviation, where, unit)
     yield Check("MuJoCo open loop, grasp forces", windows.force, GRASP_FORCE, "of the largest", where)
     if not any(grasp.moments for *_, grasp in grasps_of(solution.agents)):
         unserved, turn = f"{name} turned, unserved moment left out", simulation.windows(serve=False).deviation.turn
         yield Check(f"MuJoCo open loop, {unserved}", turn, np.inf, "rad", where)
-    yield from _deviation(f"MuJoCo with feedback, {name}", whole.deviation, f"whole lift, {BANDWIDTH:g} rad/s")
+    yield from _deviation(f"MuJoCo with feedback, {name}", whole.deviation, f"whole lift, {BANDWIDTH:g} rad/s", unit)
     worst = int(np.argmax(whole.share))
     share = float(whole.share[worst]) if np.isfinite(whole.deviation.joint) else np.inf
-    most = f"{whole.joints[worst]}, {whole.torque[worst]:.3f} Nm; at most {whole.torque.max():.3f} Nm in any joint"
+    most = f"{whole.joints[worst]}, {whole.torque[worst]:.3f} {units[worst].tau}; at most " + ", ".join(
+        f"{whole.torque[[each is one for each in units]].max():.3f} {one.tau} in any joint{kind}"
+        for one, kind in ((TURNS, ""), (SLIDES, " that slides")) if one in units
+    )  # fmt: skip
     yield Check("MuJoCo with feedback, torque added", share, FEEDBACK, "of its limit", most)
     yield Check(f"MuJoCo with feedback, moment added on the {name}", whole.moment, np.inf, "Nm", simulation.about)
 
 
-def _deviation(what: str, deviation: Deviation, where: str) -> Iterator[Check]:
+def _deviation(what: str, deviation: Deviation, where: str, unit: str) -> Iterator[Check]:
     stem, name = what.rsplit(", ", 1)
-    yield Check(f"{stem}, joints", deviation.joint, JOINT, "rad", where)
+    yield Check(f"{stem}, joints", deviation.joint, JOINT, unit, where)
     yield Check(f"{stem}, {name} displaced", deviation.position, POSITION, "m", where)
     yield Check(f"{stem}, {name} turned", deviation.turn, TURN, "rad", where)
 

@@ -8,9 +8,13 @@ Moments that grasps transmit act on hand and object as they were solved, along w
 Two grasps at points cannot hold the object about the line through them: the optimal-control problem locks that turn
 and reports the moment this takes ("unserved moment"). The simulation leaves the turn free and applies that moment.
 
+A simulation keeps the grasps together at all times, a solution at its knots: between them its grasp points are up to
+1 mm apart. So it starts from, and a feedback holds it to, the motion with the grasps closed (``_closed``), else what
+the transcription leaves open would show as torque: of an arm with heavy links up to a quarter of its limits.
+
 Nothing is stabilised in the windows. Over the whole lift an open loop diverges, within 0.3 s on the paper's lift: the
 object's centre lies above the line of the grasps, and arms that push each other through points buckle at wrist and
-forearm, where there is little inertia. So a feedback holds joints and object to the solution, ``M (w^2 e + 2 w de/dt)``
+forearm, where there is little inertia. So a feedback holds joints and object to that motion, ``M (w^2 e + 2 w de/dt)``
 with the inertia matrix M of the moment; what it adds to the solved torques is reported.
 """
 
@@ -48,7 +52,7 @@ class Deviation:
     """How far a simulation came off the solution, the largest over joints and times; infinite where it blew up.
 
     Attributes:
-        joint: [rad].
+        joint: [rad; m of one that slides].
         position: of the object's centre [m].
         turn: of the object [rad].
     """
@@ -60,7 +64,7 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Windows:
-    """Open loop in short windows, each started on the solution.
+    """Open loop in short windows, each started on the solution, its grasps closed.
 
     Attributes:
         deviation: the largest over all windows.
@@ -81,7 +85,7 @@ class Followed:
     Attributes:
         deviation: from the solution.
         joints: (n,) names of the moving joints.
-        torque: (n,) largest torque that the feedback added [Nm].
+        torque: (n,) largest torque that the feedback added [Nm; N of a joint that slides].
         share: (n,) that over the joint's torque limit, the larger of its two.
         moment: largest moment that the feedback added on the object about the axes it can turn about [Nm].
     """
@@ -157,6 +161,11 @@ class Simulation:
 
     @cached_property
     def _data(self) -> Any:
+        return import_mujoco().MjData(self._model)
+
+    @cached_property
+    def _still(self) -> Any:
+        """What closes the grasps, beside the simulation."""
         return import_mujoco().MjData(self._model)
 
     @cached_property
@@ -240,11 +249,28 @@ class Simulation:
         """Where in qvel the object can turn about its grasp points."""
         return [self._body + row for row in self._rows]
 
+    def _closed(self, k: int) -> tuple[Array, Array]:
+        """Return position and velocity at time ``k`` with the grasp points together, as near as inertia has it."""
+        mujoco, model, data = import_mujoco(), self._model, self._still
+        data.qpos[:], rate = self._states.qpos[k], self._states.qvel[k].copy()
+        for closing in (True, True, False):
+            mujoco.mj_fwdPosition(model, data)
+            slopes = data.efc_J.reshape(-1, model.nv)
+            moved = np.zeros_like(slopes)
+            mujoco.mj_solveM(model, data, moved, slopes)
+            off = data.efc_pos if closing else slopes @ rate
+            step = -moved.T @ np.linalg.lstsq(slopes @ moved.T, off, rcond=None)[0]
+            if closing:
+                mujoco.mj_integratePos(model, data.qpos, step, 1.0)
+            else:
+                rate += step
+        return data.qpos.copy(), rate
+
     def _start(self, k: int, serve: bool) -> float:
-        """Put the simulation on the solution; return by how much its grasp forces differ there [N]."""
+        """Put the simulation on the solution, its grasps closed; return by how much its forces differ there [N]."""
         mujoco, data = import_mujoco(), self._data
         mujoco.mj_resetData(self._model, data)
-        data.qpos[:], data.qvel[:] = self._states.qpos[k], self._states.qvel[k]
+        data.qpos[:], data.qvel[:] = self._closed(k)
         data.qfrc_applied[:], data.xfrc_applied[:, 3:] = self._states.tau[k], self._moments[k]
         data.qfrc_applied[self._free] = self._dense.object.wrench[k, self._rows[0]] * serve
         mujoco.mj_forward(self._model, data)
@@ -261,7 +287,8 @@ class Simulation:
 
     def _feedback(self, k: int) -> Array:
         mujoco, model, data = import_mujoco(), self._model, self._data
-        acceleration = BANDWIDTH**2 * self._error(k) + 2 * BANDWIDTH * (self._states.qvel[k] - data.qvel)
+        position, rate = self._closed(k)
+        acceleration = BANDWIDTH**2 * self._away(position) + 2 * BANDWIDTH * (rate - data.qvel)
         held = np.isin(np.arange(model.nv), [*self._joints, *self._turns])
         force = np.zeros(model.nv)
         mujoco.mj_mulM(model, data, force, acceleration * held)
@@ -272,15 +299,16 @@ class Simulation:
         self._data.qfrc_applied[:] = force
         self._data.xfrc_applied[:, 3:] = self._moments[k : k + 2].mean(axis=0)
         import_mujoco().mj_step(self._model, self._data)
-        error, at = self._error(k + 1), self._body
+        error, at = self._away(self._states.qpos[k + 1]), self._body
         joints, position, turn = error[self._joints], error[at : at + 3], error[at + 3 : at + 6]
         worst = np.array([np.abs(joints).max(), np.linalg.norm(position), np.linalg.norm(turn)])
         # Stopped well before MuJoCo takes notice: it would start again at its own zero and write a log.
         return worst if np.all(worst < LOST) else np.full(3, np.inf)
 
-    def _error(self, k: int) -> Array:
+    def _away(self, position: Array) -> Array:
+        """Return how far (nv,) the simulation is from a position."""
         error = np.zeros(self._model.nv)
-        import_mujoco().mj_differentiatePos(self._model, error, 1.0, self._data.qpos, self._states.qpos[k])
+        import_mujoco().mj_differentiatePos(self._model, error, 1.0, self._data.qpos, position)
         return error
 
 

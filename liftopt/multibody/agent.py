@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
@@ -22,9 +23,9 @@ class JointLimits:
     """Limits of an agent's moving joints, in the joint order of its reduced model; all arrays (n,).
 
     Attributes:
-        q_lower, q_upper: position [rad].
-        velocity: speed, both directions [rad/s].
-        tau_lower, tau_upper: torque, each direction apart [Nm]; ``tau_lower`` is negative.
+        q_lower, q_upper: position [rad, m].
+        velocity: speed, both directions [rad/s, m/s].
+        tau_lower, tau_upper: torque or force, each direction apart [Nm, N]; ``tau_lower`` is negative.
     """
 
     q_lower: Array
@@ -212,6 +213,9 @@ class Agent:
             share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
+        joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
+        shares_kernels: whether it is a serial arm, simple, whose joints turn about or slide along their z axes, and has
+            what is generated for all of them with the same kinds of joints.
     """
 
     name: str
@@ -228,6 +232,8 @@ class Agent:
     spine: Array | None = None
     stance: Stance | None = None
     lean: Lean | None = None
+    joint_weights: Array | None = None
+    shares_kernels: bool = False
 
     @property
     def is_simple(self) -> bool:
@@ -236,13 +242,18 @@ class Agent:
 
     @property
     def pushes_at_a_point(self) -> bool:
-        """Whether it is simple, and its hold a force at a point and no more."""
-        return self.is_simple and all(grasp.is_point_contact for grasp in self.grasps)
+        """Whether it is simple, its hold a force at a point, and what is generated for it has room for no more."""
+        return self.is_simple and not self.shares_kernels and all(grasp.is_point_contact for grasp in self.grasps)
 
     @property
     def moving_joints(self) -> tuple[str, ...]:
         """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name in list(self.model.names)[1:] if name not in self.locked_joints)
+
+    @property
+    def sliding(self) -> npt.NDArray[np.bool_]:
+        """(all joints,) True for those that slide, whose position is in m and whose effort is in N; others turn."""
+        return np.array([joint.shortname().startswith("JointModelP") for joint in list(self.model.joints)[1:]])
 
     @property
     def T_world_base(self) -> Array:

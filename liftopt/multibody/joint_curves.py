@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from liftopt.multibody.joint_meanings import joint_meanings
+from liftopt.multibody.joint_units import JointUnits
 from liftopt.multibody.trajectory import AgentTrajectory, limit_share
 from liftopt.types import Array
 
@@ -72,12 +73,13 @@ class JointCurve:
         joint: short name, ``"Q7"``.
         label: for a reader, DH name included.
         part: of the body that it belongs to, where it has several.
-        q: (K,) angle [deg].
-        v: (K,) speed [deg/s].
-        tau: (K,) torque [Nm], positive in the positive direction of ``q``.
+        q: (K,) angle [deg], or position of a joint that slides [mm].
+        v: (K,) speed, that per second.
+        tau: (K,) torque [Nm] or force [N], positive in the positive direction of ``q``.
         q_limits, tau_limits: lower and upper limit of either.
         v_limit: of the speed, either way.
         share: (K,) torque as a fraction of the limit in its direction.
+        units: of the joint.
     """
 
     joint: str
@@ -90,6 +92,7 @@ class JointCurve:
     tau_limits: tuple[float, float]
     v_limit: float
     share: Array
+    units: JointUnits
 
 
 def anatomy_of(human: AgentTrajectory) -> tuple[AnatomicalJoint, ...]:
@@ -127,18 +130,19 @@ def robot_curves(robot: AgentTrajectory, model: str) -> tuple[JointCurve, ...]:
 def _curve(agent: AgentTrajectory, joint: str, label: str, sign: int, part: str = "") -> JointCurve:
     column = agent.joint_names.index(f"{agent.name}_{joint}")
     row = int(np.count_nonzero(agent.moving[:column]))
-    limits, tau = agent.limits, agent.tau[:, column]
-    q = np.degrees([limits.q_lower[row], limits.q_upper[row]])
+    limits, tau, units = agent.limits, agent.tau[:, column], agent.units[row]
+    q = np.array([limits.q_lower[row], limits.q_upper[row]]) * units.factor
     lower, upper = float(limits.tau_lower[row]), float(limits.tau_upper[row])
     return JointCurve(
         joint=joint,
         label=label,
         part=part,
-        q=sign * np.degrees(agent.q[:, column]),
-        v=sign * np.degrees(agent.v[:, column]),
+        q=sign * agent.q[:, column] * units.factor,
+        v=sign * agent.v[:, column] * units.factor,
         tau=sign * tau,
         q_limits=(float(min(sign * q)), float(max(sign * q))),
         tau_limits=(min(sign * lower, sign * upper), max(sign * lower, sign * upper)),
-        v_limit=float(np.degrees(limits.velocity[row])),
+        v_limit=float(limits.velocity[row] * units.factor),
         share=limit_share(agent)[:, row],
+        units=units,
     )

@@ -4,7 +4,8 @@
 - The floor is there for the object and for hands, whether they grasp or not; feet and pedestals stand on it.
 - Within a body, solids on one joint do not move against each other. Of two bodies next to each other along the chain
   those of a robot are exempt, and the one that stands against the first that moves; of a person's, those that are at
-  the joint between them. A person's thighs and belly meet where the hip bends: soft tissue gives way there.
+  the joint between them. A person's thighs and belly meet where the hip bends: soft tissue gives way there. Two of a
+  robot with only a short way between them, which are thicker than that and overlap in every posture, are exempt too.
 - What stands (an obstacle, a foot, a pedestal) is checked against what stands of others too: it may be placed wrong.
 """
 
@@ -118,6 +119,8 @@ def _within(agent: Agent, solids: Sequence[Solid]) -> Iterator[SolidPair]:
             continue
         if neighbours and (agent.kind == "robot" or 0 in path or _at_joint(data, one, other, path)):
             continue
+        if agent.kind == "robot" and _always_overlap(model, *sorted((one, other), key=lambda solid: solid.joint)):
+            continue
         yield SolidPair(one, other, agent.kind)
 
 
@@ -132,6 +135,22 @@ def _path(up: Sequence[int], down: Sequence[int]) -> list[int]:
     return [*reversed(up[shared:]), *down[shared - 1 :]]
 
 
+def _always_overlap(model: pin.Model, inner: Solid, outer: Solid) -> bool:
+    """Return whether two solids of one chain are thicker than the way between them, however its joints turn.
+
+    From the inner one the way leads to the first joint beyond it, from joint to joint, and from the last to the outer.
+    """
+    chain = model.supports[outer.joint].tolist()
+    if inner.joint not in chain:
+        return False
+    first, *others = chain[chain.index(inner.joint) + 1 :]
+    if any(model.joints[joint].shortname().startswith("JointModelP") for joint in others):
+        return False
+    steps = sum(float(np.linalg.norm(model.jointPlacements[joint].translation)) for joint in others)
+    ends = _off(inner, model.jointPlacements[first].translation) + _off(outer, np.zeros(3))
+    return ends + steps < inner.radius + outer.radius
+
+
 def _at_joint(data: pin.Data, one: Solid, other: Solid, path: Sequence[int]) -> bool:
     """Return whether both solids are at the first joint of a path down the tree, in the model's neutral posture."""
     centre = data.oMi[sorted(path)[1]].translation
@@ -141,7 +160,12 @@ def _at_joint(data: pin.Data, one: Solid, other: Solid, path: Sequence[int]) -> 
 
 def _gap(solid: Solid, T_world_joint: Array, point: Array) -> float:
     """Return how far a point in the world is from a capsule or box [m], 0 within it."""
-    T_world_solid = T_world_joint @ solid.T_joint_solid
-    own = T_world_solid[:3, :3].T @ (point - T_world_solid[:3, 3])
+    rotation, origin = T_world_joint[:3, :3], T_world_joint[:3, 3]
+    return max(_off(solid, rotation.T @ (point - origin)) - solid.radius, 0.0)
+
+
+def _off(solid: Solid, point: Array) -> float:
+    """Return how far a point in the frame of a solid's joint is from a capsule's axis, or from a box [m]."""
+    own = solid.T_joint_solid[:3, :3].T @ (point - solid.T_joint_solid[:3, 3])
     half = np.array(solid.size) / 2.0 if solid.kind == "box" else np.array([0.0, 0.0, solid.size[1] / 2.0])
-    return max(float(np.linalg.norm(own - np.clip(own, -half, half))) - solid.radius, 0.0)
+    return float(np.linalg.norm(own - np.clip(own, -half, half)))

@@ -14,6 +14,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject, Stance
+from liftopt.multibody.joint_units import JointUnits, units_of
 from liftopt.types import Array
 
 GRAVITY = 9.81  # m/s^2, as in the models
@@ -28,6 +29,7 @@ class AgentTrajectory:
         kind: what it is.
         joint_names: (n,) names.
         moving: (n,) False for the locked virtual joints.
+        sliding: (n,) True for those that slide, whose position is in m and whose effort is in N; others turn.
         q, v, a: (K, n) position, velocity, acceleration [rad or m, per s, per s^2].
         tau: (K, n) generalised forces of RNEA with the grasp reaction [Nm or N].
         grasp_force: (K, grasps, 3) force of each grasp on the object, world axes [N].
@@ -47,6 +49,7 @@ class AgentTrajectory:
     kind: Kind
     joint_names: tuple[str, ...]
     moving: npt.NDArray[np.bool_]
+    sliding: npt.NDArray[np.bool_]
     q: Array
     v: Array
     a: Array
@@ -89,9 +92,14 @@ class AgentTrajectory:
         """Names of the joints that are not locked, in the model's order."""
         return tuple(name for name, moves in zip(self.joint_names, self.moving, strict=True) if moves)
 
+    @property
+    def units(self) -> tuple[JointUnits, ...]:
+        """Units of the joints that are not locked, in the model's order."""
+        return tuple(units_of(bool(slides)) for slides in self.sliding[self.moving])
+
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        constant = ("name", "kind", "joint_names", "moving", "limits", "grasps", "stance", "p_world_base")
+        constant = ("name", "kind", "joint_names", "moving", "sliding", "limits", "grasps", "stance", "p_world_base")
         over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
         return replace(self, **over_time)
 
@@ -167,7 +175,7 @@ def agent_trajectory(
         lever = agent.T_world_base[:3, :3] @ agent.stance.p_base_com
         ground_force, ground_moment = ground_force + weight, ground_moment + cross(lever, weight)
     return AgentTrajectory(
-        agent.name, agent.kind, names, moving, full_q, full_v, full_a, tau, force, moment, point, grip,
+        agent.name, agent.kind, names, moving, agent.sliding, full_q, full_v, full_a, tau, force, moment, point, grip,
         ground_force, ground_moment, agent.limits, agent.grasps, agent.stance, np.array(p_world_base),
     )  # fmt: skip
 

@@ -9,10 +9,11 @@ from liftopt.multibody.agent import Agent, Grasp
 from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.person.holds import along_bar, hand_on
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL
-from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.agents import Person
 from liftopt.scenario.grasps import PlacedGrasp, placed_grasps
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import stand_of
+from liftopt.scenario.robot import Robot
 from liftopt.types import Array
 
 AGAINST_A_SIDE = ("side", "handle")

@@ -2,32 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from liftopt.files.entries import entry, number
 from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
+from liftopt.scenario.agent_fields import FARTHEST, GRASPS, Length, Listed, Weight
 from liftopt.scenario.hands import OF_BODY, Body, Hand, in_order, with_hands
 from liftopt.scenario.presets import NATURAL
+from liftopt.scenario.robot import Robot
 
-Kind = Literal["person", "robot"]
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
-NAMES = "1 to 32 letters, digits or _, a letter first"
-FARTHEST = 10.0  # [m] from the origin
-OF_PERSON, OF_ROBOT = NATURAL["person"], NATURAL["robot"]  # where the preset is another, a scenario fills in its own
-GRASPS = Literal["point", "wrench"]
-Weight = Annotated[float, number("weight of squared torques, as shares of strength in preset natural", "", 0.0, 1e6)]
-Length = Annotated[float, number("", "m", -FARTHEST, FARTHEST)]
-
-
-def _as_tuple(value: object) -> object:
-    return tuple(value) if isinstance(value, list) else value
-
-
-Listed = BeforeValidator(_as_tuple)  # TOML and JSON have lists where a model has a tuple
+OF_PERSON = NATURAL["person"]  # where the preset is another, a scenario fills in its own
 
 
 class Person(Section):
@@ -79,48 +66,6 @@ class Person(Section):
     @classmethod
     def _with_hands(cls, values: object) -> object:
         return with_hands(values)
-
-
-class Tool(Section):
-    """The gripper on the robot's flange; length and mass 0 stand for the bare flange."""
-
-    length: Annotated[float, number("flange to grasp point, along the flange's axis", "m", 0.0, 0.6)] = 0.15
-    mass: Annotated[float, number("mass of the gripper", "kg", 0.0, 10.0)] = 0.4
-
-
-class Pose(Section):
-    """Where a robot's base stands and which way it faces; what is left out is as for the default robot."""
-
-    x: Annotated[float | None, number("base along X; by default task.standing_distance", "m", -FARTHEST, FARTHEST)] = (
-        None
-    )
-    y: Annotated[float, number("base along Y", "m", -FARTHEST, FARTHEST)] = 0.0
-    z: Annotated[float | None, number("height of the base; by default base_height", "m", 0.0, 2.0)] = None
-    yaw_deg: Annotated[float, number("which way the robot faces, from X about Z", "deg", -360.0, 360.0)] = 180.0
-
-
-class Robot(Section):
-    """A robot that lifts; by default it faces the first person."""
-
-    kind: Annotated[Literal["robot"], entry("what the agent is")] = "robot"
-    model: Annotated[Literal["sawyer"], entry("which robot")]
-    base_height: Annotated[float, number("height of the robot's base above the floor", "m", 0.0, 2.0)] = 0.915
-    base: Pose = Pose()
-    tool: Tool = Tool()
-    grasp: Annotated[GRASPS, entry("a force at a point, or a gripper that also transmits moments")] = OF_ROBOT["grasp"]
-    max_grasp_moment: Annotated[float, number("largest moment of a wrench grasp", "Nm", 0.0, 1e3, open_low=True)] = 5.0
-    grasp_turn_deg: Annotated[float, number("largest turn of the gripper in a wrench grasp", "deg", 1.0, 180.0)] = 30.0
-    weight: Weight = OF_ROBOT["weight"]
-
-    @property
-    def height_key(self) -> str:
-        """Key within the robot of the height of its base."""
-        return "base_height" if self.base.z is None else "base.z"
-
-    @property
-    def height(self) -> float:
-        """Height of the base above the floor [m]."""
-        return self.base_height if self.base.z is None else self.base.z
 
 
 Agent = Person | Robot

@@ -11,7 +11,7 @@ from liftopt.files.entries import entry, number
 from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.section import Section
 from liftopt.multibody.edges import HOLDS, Hold
-from liftopt.scenario.agents import NAME, NAMES, Listed
+from liftopt.scenario.agent_fields import NAME, NAMES, Listed
 
 Coordinate = Annotated[float, number("", "m", -2.0, 2.0)]
 Position = Annotated[tuple[Coordinate, Coordinate, Coordinate], Listed]

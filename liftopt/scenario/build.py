@@ -13,14 +13,15 @@ from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import Placement
-from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.solids import Solid, placed_box
 from liftopt.multibody.table import lifted_table
 from liftopt.scenario.agent_grasps import with_grasps
-from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.agents import Person
 from liftopt.scenario.grasps import grasp_points, middle_of_grasps, middle_of_hands, placed_grasps
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import lead, stand_of
+from liftopt.scenario.robot import Robot
+from liftopt.scenario.robot_agents import agent_of_robot
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.types import Array
 
@@ -49,16 +50,10 @@ def agent_of(scenario: Scenario, name: str, urdfs: Mapping[str, str] | None = No
 
 def _bare_agent(scenario: Scenario, name: str, urdf: str | None) -> Agent:
     """Return the agent with grasps that are not yet what the scenario says of them."""
-    who, place = scenario.agents[name], Placement.at(*stand_of(scenario, name))
+    who = scenario.agents[name]
     if isinstance(who, Robot):
-        return sawyer_agent(
-            place=place,
-            base_height=who.height,
-            tool_length=who.tool.length,
-            tool_mass=who.tool.mass,
-            urdf=urdf,
-            name=name,
-        )
+        return agent_of_robot(scenario, name, urdf)
+    place = Placement.at(*stand_of(scenario, name))
     if who.body == "arm":
         return human_agent(subject_of(who), urdf, name=name, place=place)
     return whole_human_agent(subject_of(who), urdf, name=name, place=place, hands=who.hands)
@@ -68,7 +63,7 @@ def agent_key(scenario: Scenario, name: str) -> Hashable:
     """Return all that an agent's model depends on: two scenarios with equal keys give the same agent."""
     holds = tuple((hold.name, hold.hold, hold.quarters) for hold in placed_grasps(scenario) if hold.agent == name)
     entries = tuple(value for key, value in scenario.agents[name] if key != "weight")
-    return name, entries, stand_of(scenario, name), holds
+    return name, entries, stand_of(scenario, name), holds, scenario.objective.preset
 
 
 def object_key(scenario: Scenario) -> Hashable:

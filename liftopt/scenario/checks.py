@@ -6,11 +6,12 @@ from collections import Counter
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import FREE
-from liftopt.scenario.agents import NAME, NAMES
+from liftopt.scenario.agent_fields import NAME, NAMES
 from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.grasp_checks import check_grasps
 from liftopt.scenario.grasps import middle_of_hands
 from liftopt.scenario.placement import DISTANCE, distance_key, lead, stand_of
+from liftopt.scenario.robot_checks import check_robots
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 from liftopt.scenario.urdf_files import urdf_files
 
@@ -26,6 +27,7 @@ def check(scenario: ScenarioFields) -> None:
         raise InputError("agents", NO_VALUE, "is empty; must hold a table [agents.NAME] for everybody who lifts")
     _check_names(scenario)
     _check_weights(scenario)
+    check_robots(scenario)
     for name in scenario.agents:
         stand_of(scenario, name)
     _check_obstacles(scenario)

@@ -10,9 +10,11 @@ from pydantic import AfterValidator
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import entry, number
 from liftopt.files.section import Section
-from liftopt.scenario.agents import Agent, Agents, Kind, Person, Robot
+from liftopt.scenario.agent_fields import Kind
+from liftopt.scenario.agents import Agent, Agents, Person
 from liftopt.scenario.box import Box
 from liftopt.scenario.obstacles import Obstacles
+from liftopt.scenario.robot import Robot
 from liftopt.scenario.settings import Limits, Objective, Refine, Solver
 from liftopt.scenario.task import Lift
 

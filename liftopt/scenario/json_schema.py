@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from liftopt.scenario.agents import KINDS, NAME
+from liftopt.scenario.agent_fields import NAME
+from liftopt.scenario.agents import KINDS
 from liftopt.scenario.model import REQUIRED, SCHEMA, Scenario
 from liftopt.scenario.presets import OBJECTIVE, defaults_at
 

@@ -24,6 +24,7 @@ from liftopt.scenario.keys import Changes, changes_in, leaves, path_of, set_entr
 from liftopt.scenario.listing import describe
 from liftopt.scenario.presets import preset_of, with_defaults, without_preset
 from liftopt.scenario.refusals import refusal
+from liftopt.scenario.robot_defaults import with_files, without_model
 from liftopt.scenario.schema1 import as_schema_2
 
 SCHEMA = 2
@@ -108,6 +109,8 @@ def load_scenario(source: str | Path | None = None, changes: Changes = ()) -> Sc
     """
     path, tables = read_tables("table5" if source is None else source)
     tables = _schema_2(tables)
+    if "agents" in tables:
+        tables["agents"] = with_files(tables["agents"], path.parent)
     with suppress(InputError):  # a file name need not be a name
         tables.setdefault("name", safe_name(path.stem))
     return _scenario(_changed(tables, changes))
@@ -127,7 +130,7 @@ def _changed(tables: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
     wanted = changes_in(changes)
     changed = _with_entries(deepcopy(dict(tables)), wanted)
     kept = tables if preset_of(changed) == preset_of(tables) else without_preset(tables)
-    return _with_entries(without_hands(kept, changed), wanted)
+    return _with_entries(without_model(without_hands(kept, changed), changed), wanted)
 
 
 def _with_entries(tables: dict[str, Any], entries: Iterable[tuple[str, Any]]) -> dict[str, Any]:

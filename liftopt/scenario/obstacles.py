@@ -10,7 +10,7 @@ from pydantic import AfterValidator
 from liftopt.errors import InputError
 from liftopt.files.entries import entry, number
 from liftopt.files.section import Section
-from liftopt.scenario.agents import FARTHEST, NAME, NAMES, Listed
+from liftopt.scenario.agent_fields import FARTHEST, NAME, NAMES, Listed
 
 SMALLEST, LARGEST = 0.001, 20.0  # [m]: an edge of an obstacle
 Edge = Annotated[float, number("", "m", SMALLEST, LARGEST)]

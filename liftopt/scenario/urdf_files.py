@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from liftopt.scenario.agents import Agent, Person
 from liftopt.scenario.fields import ScenarioFields
+from liftopt.scenario.robot import Robot
+from liftopt.scenario.robot_defaults import SAWYER
 
 
 def urdf_files(scenario: ScenarioFields) -> dict[str, str]:
@@ -16,4 +18,5 @@ def _file(name: str, agent: Agent) -> str:
     """Return the file name of an agent's URDF: one that users know, of the paper's human and robot, or its own."""
     if name == "human" and isinstance(agent, Person) and agent.body == "arm":
         return "human_arm.urdf"
-    return "sawyer.urdf" if name == "robot" and agent.kind == "robot" else f"{name}.urdf"
+    is_sawyer = isinstance(agent, Robot) and agent.model == SAWYER
+    return "sawyer.urdf" if name == "robot" and is_sawyer else f"{name}.urdf"

@@ -11,6 +11,7 @@ from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.multibody.joint_units import units_of
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.search.inverse_kinematics import InverseKinematics
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
@@ -28,7 +29,7 @@ DIFFERENT, NEAREST = 0.1, 6
 NAMED = 3
 # Ratio of the strengths at which the bisection ends.
 PRECISION = 1.01
-# A joint beyond its range by less than this is not named [rad].
+# A joint beyond its range by less than this is not named [rad, m].
 NOTICEABLE = 0.01
 
 
@@ -131,8 +132,17 @@ def _range_of_motion(
     q = reach.coordinates[closed, :-OBJECT_SIZE]
     beyond = np.maximum(0.0, np.maximum(lower - q, q - upper))
     least = beyond[np.argmin(beyond.sum(axis=1))]
-    names = [joint for agent in problem.team.agents for joint in agent.moving_joints]
-    parts = [f"{names[j]} {np.degrees(least[j]):.0f} deg" for j in np.argsort(-least) if least[j] > NOTICEABLE]
+    joints = [
+        (name, units_of(bool(slides)))
+        for agent in problem.team.agents
+        for name, slides in zip(list(agent.model.names)[1:], agent.sliding, strict=True)
+        if name in agent.moving_joints
+    ]
+    parts = [
+        f"{joints[j][0]} {joints[j][1].factor * least[j]:.0f} {joints[j][1].shown}"
+        for j in np.argsort(-least)
+        if least[j] > NOTICEABLE
+    ]
     return f" (with {', '.join(parts)} beyond the range of motion it would reach)" if parts else ""
 
 

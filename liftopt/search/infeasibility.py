@@ -13,6 +13,7 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.result import Multipliers, SolverResult
 from liftopt.collocation.spline import RestToRestSpline
+from liftopt.multibody.joint_units import SLIDES
 from liftopt.scenario.model import Scenario
 from liftopt.search.candidate import Candidate
 from liftopt.search.feasibility_screen import screen_ends, too_fast
@@ -106,7 +107,8 @@ def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
         "grasp_closure": f"{whose} grasp stays {amount:.3f} m off the {lifted} {at}",
         "clearance": f"{who} come {amount:.3f} m too near each other {at}",
         "workspace": f"{whose} grasp lies {amount:.3f} m outside its half-space {at}",
-        "torque": f"{who} needs {amount:.3g} Nm ({share}) more than its torque limit {at}",
+        "torque": f"{who} needs {amount:.3g} {violation.unit} ({share}) more than its "
+        f"{'force' if violation.unit == SLIDES.tau else 'torque'} limit {at}",
         "grasp_force": f"{whose} grasp needs {amount:.3g} N ({share}) more than its cap {at}",
         "grasp_moment": f"{whose} grasp needs {amount:.3g} Nm ({share}) more than its cap {at}",
         "grasp_turn": f"{whose} hand turns {amount:.0f} deg farther on the {lifted} than it may {at}",

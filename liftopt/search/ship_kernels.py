@@ -2,9 +2,9 @@
 
 The command is ``python -m liftopt.search.ship_kernels FOLDER [--every-processor]``.
 
-A kernel is parametric in subject, tool and object, and of a whole body in its place and its hands' hold, so these few
-serve every scenario. Installed with the package they
-save a user the wait at the first solve, and the need for a compiler.
+A kernel is parametric in subject, tool and object, of a whole body in its place and its hands' hold, of a serial arm in
+all but the kinds of its joints, so these few serve nearly every scenario. Installed with the package they save a user
+the wait at the first solve, and the need for a compiler.
 """
 
 from __future__ import annotations
@@ -14,20 +14,29 @@ import os
 import platform
 import sys
 from collections.abc import Iterator, Sequence
-from typing import get_args
+from typing import Any, get_args
 
+import numpy as np
+import pinocchio as pin
+
+from liftopt.collocation.arm_dynamics import ArmTopology, arm_functions
+from liftopt.collocation.arm_poses import ArmPoseTopology, arm_pose_functions
 from liftopt.collocation.codegen.kernels import Builder, load_kernels
 from liftopt.collocation.codegen.simd_kernels import PROCESSORS, load_simd_kernels
-from liftopt.collocation.dynamics import Topology
+from liftopt.collocation.dynamics import Topology, object_functions
 from liftopt.collocation.problem import Team, kernel_requests
+from liftopt.collocation.standing_place import held_anywhere
 from liftopt.multibody.table import lifted_table
-from liftopt.scenario.agents import GRASPS
+from liftopt.scenario.agent_fields import GRASPS
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 from liftopt.search.team_solids import TeamSolids
 
 Request = tuple[Builder, Topology]
 MOST_GRASPS = 4  # two people, both hands; an object with more compiles its small kernel when it is first solved
+# Joints of serial arms from the base on, R for one that turns and P for one that slides: those of all robots that are
+# known by name, of arms with eight joints, and of six on a column.
+ARMS = ("RRRRR", "RRRRRR", "RRRRRRR", "RRRRRRRR", "PRRRRRR", "PRRRRRRR")
 
 
 def ship(folder: str, every_processor: bool = False) -> bool:
@@ -48,7 +57,7 @@ def ship(folder: str, every_processor: bool = False) -> bool:
 
 
 def shipped_requests() -> Iterator[list[Request]]:
-    """Give what to generate kernels from, a team at a time: of one arm each, and of a whole body with an object."""
+    """Give what to generate kernels from, a team at a time: of one arm each, of a whole body, and of serial arms."""
     for grasp in get_args(GRASPS):
         yield _of_team(f"human.grasp={grasp}", f"robot.grasp={grasp}")
     yield _of_team("human.body=whole")
@@ -59,6 +68,24 @@ def shipped_requests() -> Iterator[list[Request]]:
         points = {f"hand_{n}": (0.0, 0.0, 0.0) for n in range(count)}
         held = lifted_table(mass=1.0, depth=0.3, width=0.4, height=0.2, grasps=points)
         yield kernel_requests(agents, held)[-1:]
+        if count > 1:  # one point alone holds nothing
+            yield [(object_functions, held_anywhere(Topology.of(held.model, held.grasp_frames)))]
+    for kinds in ARMS:
+        yield arm_requests(kinds)
+
+
+def arm_requests(kinds: str) -> list[Request]:
+    """Return what to generate all kernels of serial arms from that have these joints, R or P each."""
+    arm, joint = pin.Model(), 0
+    for number, kind in enumerate(kinds):
+        moving = pin.JointModelRZ() if kind == "R" else pin.JointModelPZ()
+        joint = arm.addJoint(joint, moving, pin.SE3.Identity(), str(number))
+    arm.addFrame(pin.Frame("hand", joint, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
+    found: list[tuple[Any, Topology]] = [
+        (arm_functions, ArmTopology.holding(arm, "hand", np.eye(3))),
+        (arm_pose_functions, ArmPoseTopology.of_links(arm)),
+    ]
+    return found
 
 
 def _of_team(*changes: str) -> list[Request]:

@@ -1,7 +1,7 @@
 """What an ergonomist and a robot engineer ask of a solution, as plain numbers ready for JSON.
 
-Units stand in the key names (``_Nm``, ``_s``, ``_deg``); shares are fractions. A number that does not exist (the
-load share of a body in free fall, the objective of a start that failed) is None.
+Units stand in the key names (``_Nm``, ``_s``, ``_deg``; of a joint that slides ``_N``, ``_mm``); shares are fractions.
+A number that does not exist (the load share of a body in free fall, the objective of a start that failed) is None.
 """
 
 from __future__ import annotations
@@ -97,24 +97,25 @@ def load_share(solution: Solution) -> dict[str, Any]:
 def _joints(solution: Solution, agent: AgentTrajectory) -> list[dict[str, Any]]:
     moving = np.flatnonzero(agent.moving)
     tau = agent.tau[:, moving]
-    share, who = limit_share(agent), solution.scenario.agents[agent.name]
+    share, units, who = limit_share(agent), agent.units, solution.scenario.agents[agent.name]
     meanings = joint_meanings(agent.kind, getattr(who, "model", ""))
     rows = []
     for column, index in enumerate(moving):
         joint = agent.joint_names[index].removeprefix(f"{agent.name}_")
         at, worst = int(np.argmax(np.abs(tau[:, column]))), int(np.argmax(share[:, column]))
-        q = np.degrees(agent.q[:, index])
+        unit = units[column]
+        q, effort = agent.q[:, index] * unit.factor, f"peak_{unit.effort}"
         rows.append(
             {
                 "joint": joint,
                 "meaning": meanings.get(joint, ""),
-                "peak_torque_Nm": _number(tau[at, column]),
-                "peak_torque_at_s": _number(solution.time[at]),
+                f"{effort}_{unit.tau}": _number(tau[at, column]),
+                f"{effort}_at_s": _number(solution.time[at]),
                 "share_of_limit": _number(share[at, column]),
                 "largest_share_of_limit": _number(share[worst, column]),
                 "largest_share_at_s": _number(solution.time[worst]),
-                "q_min_deg": _number(q.min()),
-                "q_max_deg": _number(q.max()),
+                f"q_min_{unit.shown}": _number(q.min()),
+                f"q_max_{unit.shown}": _number(q.max()),
             }
         )
     return rows

@@ -111,10 +111,11 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
     position.append(np.maximum(task.pose_lower - lifted.pose, lifted.pose - task.pose_upper))
     speed.append(np.abs(lifted.pose_velocity) - task.pose_velocity)
     grasps = [grasp.name for _, _, _, grasp in grasps_of(motion.agents)]
+    unit = "SI" if any(agent.sliding[agent.moving].any() for agent in motion.agents) else "Nm"
     checks = [
         _worst("position limits", np.hstack(position), limit, "SI", joints + names, motion.time),
         _worst("speed limits", np.hstack(speed), limit, "SI", joints + names, motion.time),
-        _worst("torque limits", np.hstack(torque), limit, "Nm", joints, motion.time),
+        _worst("torque limits", np.hstack(torque), limit, unit, joints, motion.time),
         _worst("grasp force cap", np.hstack(force), limit, "N", grasps, motion.time),
     ]
     for model, trajectory in zip(problem.team.agents, motion.agents, strict=True):

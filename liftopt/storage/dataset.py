@@ -27,13 +27,14 @@ def to_xarray(solution: Solution) -> xr.Dataset:
     """Return a solution as the dataset that solution.nc holds: SI units, ``units`` and ``long_name`` on each variable.
 
     Dimensions: ``time``, ``<agent>_joint``, ``xyz``, ``quat`` (x y z w), ``twist`` (linear then angular), ``grasp``,
-    ``pose``.
+    ``pose``. The coordinate ``<agent>_joint_kind`` says which joints are prismatic; the variables along
+    ``<agent>_joint`` have ``units_prismatic`` for those.
     """
     names = {
         name: ((name,), np.array(labels, dtype=object), {"units": "1", "long_name": f"names along {name}"})
         for name, labels in _labels(solution).items()
     }
-    return xr.Dataset(_variables(solution), coords=names, attrs=_attributes(solution))
+    return xr.Dataset(_variables(solution), coords=names | _kinds(solution), attrs=_attributes(solution))
 
 
 def _variable(dimensions: tuple[str, ...], values: Array, units: str, long_name: str) -> Variable:
@@ -51,17 +52,32 @@ def _labels(solution: Solution) -> dict[str, tuple[str, ...]]:
     }
 
 
+def _kinds(solution: Solution) -> dict[str, Variable]:
+    """Return whether joints are revolute or prismatic, by which the units of what stands along them differ."""
+    return {
+        f"{agent.name}_joint_kind": _variable(
+            (f"{agent.name}_joint",),
+            np.where(agent.sliding, "prismatic", "revolute").astype(object),
+            "1",
+            f"kinds of the joints of {agent.name}; units_prismatic are those of prismatic ones",
+        )
+        for agent in solution.agents
+    }
+
+
 def _variables(solution: Solution) -> dict[str, Variable]:
     variables = {"time": _variable(("time",), solution.time, "s", "time of the knots")}
     for agent in solution.agents:
         dimensions = ("time", f"{agent.name}_joint")
-        for kind, values, unit, meaning in (
-            ("q", agent.q, "rad", "joint position (metres for the prismatic GT joints)"),
-            ("v", agent.v, "rad/s", "joint velocity (m/s for the prismatic GT joints)"),
-            ("a", agent.a, "rad/s^2", "joint acceleration (m/s^2 for the prismatic GT joints)"),
-            ("tau", agent.tau, "N m", "joint torque (force in N for the prismatic GT joints)"),
+        for kind, values, unit, of_prismatic, meaning in (
+            ("q", agent.q, "rad", "m", "joint position (metres for prismatic joints)"),
+            ("v", agent.v, "rad/s", "m/s", "joint velocity (m/s for prismatic joints)"),
+            ("a", agent.a, "rad/s^2", "m/s^2", "joint acceleration (m/s^2 for prismatic joints)"),
+            ("tau", agent.tau, "N m", "N", "joint torque (force in N for prismatic joints)"),
         ):
-            variables[f"{agent.name}_{kind}"] = _variable(dimensions, values, unit, f"{agent.name} {meaning}")
+            variable = _variable(dimensions, values, unit, f"{agent.name} {meaning}")
+            variable[2]["units_prismatic"] = of_prismatic
+            variables[f"{agent.name}_{kind}"] = variable
     return variables | _of_object(solution) | _of_grasps(solution) | _of_ground(solution)
 
 

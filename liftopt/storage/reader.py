@@ -17,6 +17,7 @@ from liftopt.multibody.likeness import difference
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import Scenario
+from liftopt.scenario.robot_agents import is_from_file
 from liftopt.solution.checks import Verification
 from liftopt.solution.clearance_of import clearance_of
 from liftopt.solution.interpolation import between_knots
@@ -56,9 +57,11 @@ def load_result(path: str | Path) -> Solution:
     except FileNotFoundError:
         raise no_result(path) from None
     scenario = scenario_of(file, attributes)
-    built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario), object_of(scenario))
     urdfs = _urdfs(file, attributes, scenario)
+    # Of a robot that a file describes nothing is read again: that file may be gone, or be no robot at all.
+    own = {name: text for name, text in urdfs.items() if is_from_file(scenario, name)}
     try:
+        built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario, own), object_of(scenario))
         agents, lifted = agents_of(scenario, urdfs), object_of(scenario, urdfs)
         _check_models(file, built, (*agents, lifted))
         return _solution(scenario, urdfs, agents, lifted, data, attributes)

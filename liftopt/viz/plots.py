@@ -139,8 +139,8 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
     ),
     Plot(
         "clearance",
-        "How near bodies come over the lift, by kind of pair; below zero they overlap. How far person and robot are "
-        "apart, and how fast their nearest points move against each other.",
+        "How near bodies come over the lift, by kind of pair; below zero they overlap. Where people lift with robots, "
+        "also how far they are apart, and how fast their nearest points move against each other.",
         clearance,
     ),
     AgentPlot("person", "ground_reaction", "ground_reaction", "What the ground does to {who}.", ground_reaction),

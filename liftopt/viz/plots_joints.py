@@ -17,7 +17,7 @@ from liftopt.viz.plots_style import FAINT, INK, LIMIT, LINES, VERMILION, Line, d
 from liftopt.viz.who import robot_of
 
 Quantity = Literal["angle", "torque"]
-UNIT = {"angle": "deg", "torque": "Nm"}
+QUANTITIES: tuple[Quantity, Quantity] = ("angle", "torque")
 NEAR = 0.6  # a limit is drawn to scale where the curve uses this much of it
 ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
 
@@ -29,9 +29,9 @@ def human_arm(lift: Lift, agent: AgentTrajectory) -> Figure:
     for curve, (left, right) in zip(curves, grid, strict=True):
         _panel(left, lift, curve, "angle", LINES[0])
         _panel(right, lift, curve, "torque", LINES[1])
-        for axes, quantity in ((left, "angle"), (right, "torque")):
+        for axes, quantity in zip((left, right), QUANTITIES, strict=True):
             axes.set_title(f"{curve.label}: {quantity}")
-            axes.set_ylabel(f"{quantity} [{UNIT[quantity]}], flexion +")
+            axes.set_ylabel(f"{_named(curve, quantity)}, flexion +")
     time_axes(grid, float(lift.dense.time[-1]))
     return figure
 
@@ -80,7 +80,7 @@ def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figur
         axes = grid[index // columns][index % columns]
         _panel(axes, lift, curve, quantity, LINES[0] if quantity == "angle" else LINES[1])
         axes.set_title(curve.label)
-        axes.set_ylabel(f"{quantity} [{UNIT[quantity]}]")
+        axes.set_ylabel(_named(curve, quantity))
     if len(curves) % columns:
         _explain(grid[-1].pop())
         grid[-2][-1].tick_params(labelbottom=True)
@@ -105,10 +105,19 @@ def _panel(axes: Axes, lift: Lift, curve: JointCurve, quantity: Quantity, line: 
     _mark_limits(axes, lift.dense.time, values, limits)
     used = f", {100 * curve.share.max():.0f} % used" if quantity == "torque" else ""
     axes.annotate(
-        f"limits {_signed(limits[0])} to {_signed(limits[1])} {UNIT[quantity]}{used}",
+        f"limits {_signed(limits[0])} to {_signed(limits[1])} {_unit(curve, quantity)}{used}",
         (1.0, 0.03), xycoords="axes fraction", ha="right", va="bottom", fontsize=6.8, color=LIMIT,
         bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
     )  # fmt: skip
+
+
+def _unit(curve: JointCurve, quantity: Quantity) -> str:
+    return curve.units.shown if quantity == "angle" else curve.units.tau
+
+
+def _named(curve: JointCurve, quantity: Quantity) -> str:
+    """Return what is shown, ``"angle [deg]"``; of a joint that slides ``"position [mm]"``."""
+    return f"{curve.units.position if quantity == 'angle' else curve.units.effort} [{_unit(curve, quantity)}]"
 
 
 def _scale(axes: Axes, values: Array, limits: tuple[float, float], quantity: Quantity) -> None:

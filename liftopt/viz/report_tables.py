@@ -9,6 +9,7 @@ import numpy as np
 
 from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.joint_curves import JointCurve
+from liftopt.multibody.joint_units import TURNS
 from liftopt.multibody.person.provenance import subject_quantities
 from liftopt.scenario.model import Scenario
 from liftopt.solution.solution import Solution
@@ -28,14 +29,15 @@ def joint_rows(curves: tuple[JointCurve, ...], dense: Solution) -> list[dict[str
     rows = []
     for curve in curves:
         at, worst = int(np.argmax(np.abs(curve.tau))), int(np.argmax(curve.share))
+        q_unit, tau_unit = ("", "") if curve.units is TURNS else (f" {curve.units.shown}", f" {curve.units.tau}")
         rows.append(
             {
                 "label": curve.label,
                 "part": curve.part,
-                "q": f"{_number(curve.q.min())} to {_number(curve.q.max())}",
-                "q_limits": _span(curve.q_limits),
-                "tau": f"{_number(curve.tau[at], 2)} at {dense.time[at]:.2f} s",
-                "tau_limits": _span(curve.tau_limits),
+                "q": f"{_number(curve.q.min())} to {_number(curve.q.max())}{q_unit}",
+                "q_limits": _span(curve.q_limits) + q_unit,
+                "tau": f"{_number(curve.tau[at], 2)}{tau_unit} at {dense.time[at]:.2f} s",
+                "tau_limits": _span(curve.tau_limits) + tau_unit,
                 "share": 100 * float(curve.share[worst]),
                 "share_at": f"{dense.time[worst]:.2f} s",
             }

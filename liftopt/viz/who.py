@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.agents import Robot
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import stand_of
+from liftopt.scenario.robot import Robot
 from liftopt.viz.scene_part import Colour
 
 # Of arrows and paths, in the order of the agents: after Okabe & Ito (2008), told apart with any common colour vision.

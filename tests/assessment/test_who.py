@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from liftopt.assessment.who import who_in, whose
-from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.agents import Person
+from liftopt.scenario.robot import Robot
 
 ANNA = Person(stature=1.62, mass=58.0, sex="female")
 SAWYER = Robot(model="sawyer")

@@ -11,6 +11,7 @@ import pytest
 
 from liftopt.crosscheck.motion_report import FEEDBACK
 from liftopt.crosscheck.mujoco_forward import Simulation, Windows
+from liftopt.multibody.mujoco_model import import_mujoco
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 
@@ -55,6 +56,25 @@ def test_the_whole_lift_is_followed_with_little_feedback(simulation):
     assert whole.share.max() < FEEDBACK
     assert whole.moment < 0.01
     assert len(whole.joints) == len(whole.torque) == 17
+
+
+def test_it_starts_where_the_grasps_are_together_and_near_the_solution(simulation, solution):
+    # Oracle: MuJoCo's own kinematics of the sites; between the knots the solution's are apart.
+    mujoco, model = import_mujoco(), simulation._model
+    grasps = [(f"{name}_grasp_site", f"grasp_{name}_site") for name in ("human", "robot")]
+    data, apart, parting = mujoco.MjData(model), [], []
+    for k in range(0, len(simulation._states.qpos), 77):
+        for position, rate in ((simulation._states.qpos[k], simulation._states.qvel[k]), simulation._closed(k)):
+            data.qpos[:], data.qvel[:] = position, rate
+            mujoco.mj_forward(model, data)
+            apart.append(max(np.linalg.norm(data.site(one).xpos - data.site(two).xpos) for one, two in grasps))
+            parting.append(np.abs(data.efc_vel).max())
+    open_ones, closed = np.reshape(apart, (-1, 2)).max(axis=0)
+    assert open_ones > 1e-5
+    assert closed < 1e-9
+    assert np.reshape(parting, (-1, 2)).max(axis=0)[1] < 1e-9
+    moved = [np.abs(simulation._closed(k)[0] - simulation._states.qpos[k]).max() for k in range(0, 4001, 77)]
+    assert 0.0 < max(moved) < 0.02
 
 
 def test_torques_for_another_grasp_force_do_not_make_the_motion(solution, windows):

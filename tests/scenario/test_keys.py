@@ -9,10 +9,12 @@ import pytest
 from pydantic import ValidationError
 
 from liftopt.errors import InputError
-from liftopt.scenario.agents import Person, Pose, Robot, Tool
+from liftopt.scenario.agents import Person
 from liftopt.scenario.box import Box
 from liftopt.scenario.keys import changes_in
 from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.robot import Pose, Robot, Tool
+from liftopt.scenario.robot_defaults import OF_MODEL
 from liftopt.scenario.task import Lift
 
 DEFAULT = load_scenario()
@@ -111,6 +113,7 @@ def test_entries_are_all_values_by_the_keys_that_help_lists() -> None:
     found, listed = DEFAULT.entries(), dict(DEFAULT.describe())
     assert set(found) <= set(listed)
     unset = {"human.position", "human.heading_deg", "robot.base.x", "robot.base.z", "object.grasps", "obstacles"}
+    unset |= {"robot.tool.direction", *(f"robot.{key}" for key in (*OF_MODEL, "grasp_frame"))} - {"robot.tool"}
     assert set(listed) - set(found) - unset == {f"task.{end}.{axis}" for end in ("start", "end") for axis in "xyz"}
     assert (found["human.stature"], found["object.mass"], found["schema"]) == (1.75, 2.0, 2)
 

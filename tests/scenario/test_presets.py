@@ -9,9 +9,10 @@ import pytest
 
 from liftopt.errors import InputError
 from liftopt.files.toml_text import toml
-from liftopt.scenario.agents import Person, Robot
+from liftopt.scenario.agents import Person
 from liftopt.scenario.build import task_of
 from liftopt.scenario.model import Scenario, load_scenario, scenario_from_dict
+from liftopt.scenario.robot import Robot
 from liftopt.scenario.settings import Objective
 
 TABLES: dict[str, Any] = {

@@ -51,8 +51,8 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
                 "kind": "robot",
                 "model": "sawyer",
                 "base_height": 0.915,
-                "base": {"y": 0.0, "yaw_deg": 180.0},
-                "tool": {"length": 0.15, "mass": 0.4},
+                "base": {"y": 0.0, "roll_deg": 0.0, "pitch_deg": 0.0, "yaw_deg": 180.0},
+                "tool": {"length": 0.15, "mass": 0.4, "turn_deg": 0.0},
                 "max_grasp_moment": 5.0,
                 "grasp_turn_deg": 30.0,
                 **NATURAL["robot"],
@@ -155,6 +155,7 @@ NUMBERS = [(key, field) for key, field in fields_of(Scenario, DEFAULT_TEAM) if k
 def test_every_number_refuses_all_but_finite_numbers_in_its_range(key: str, field: FieldInfo) -> None:
     low, high, _ = range_of(field)
     own = [f"{key[:-2]}={{x=0.6, z=0.9}}"] if key.startswith("task.") and key[-2:] in (".x", ".y", ".z") else []
+    own += ["robot.model=arm.urdf"] if key in ("robot.base.roll_deg", "robot.base.pitch_deg") else []
     bad = [
         "nan",
         "inf",
@@ -201,7 +202,12 @@ def test_whole_numbers_are_taken_where_numbers_are_and_kept_as_floats() -> None:
         ("tabel.mass=3", r"^tabel\.mass = 3: unknown key; did you mean object\.mass\?"),
         ("foo=3", "^foo = 3: unknown key; known here: schema, name, duration"),
         ("human.sex=femal", r"^human\.sex = 'femal': must be \"male\" or \"female\""),
-        ("robot.model=ur5", r"^robot\.model = 'ur5': must be \"sawyer\""),
+        (
+            "robot.model=ur55",
+            r"^robot\.model = 'ur55': must be a name that \"liftopt robots\" lists, .* mean ur5",
+        ),
+        ("robot.locked.right_j0=1.0", r"^robot\.locked = 'right_j0': goes with other models than sawyer"),
+        ("robot.base.pitch_deg=90.0", r"^robot\.base\.pitch_deg = 90\.0: must be 0 for sawyer"),
         ("schema=1", "^schema = 1: must be 2"),
         ("schema=true", "^schema = True: must be 2"),
         ("table=3", "^object = 3: must be a section with the keys name, mass, depth, width, height"),

@@ -16,11 +16,13 @@ from liftopt.lab.comparison.person import person_comparisons
 from liftopt.lab.forces.force_record import ForceRecord
 from liftopt.lab.meant import the_person, the_robot
 from liftopt.lab.mocap.recorded_lift import RecordedLift
+from liftopt.lab.robot.export_formats import state_and_goal
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.robot_record import RobotRecord
 from liftopt.multibody.joint_curves import robot_curves
 from liftopt.multibody.trajectory import AgentTrajectory
-from liftopt.scenario.agents import Robot
 from liftopt.scenario.build import agent_of
+from liftopt.scenario.robot import Robot
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
@@ -124,18 +126,24 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
     asked = dense.scenario.agents[agent.name]
     assert isinstance(asked, Robot)
     curves = robot_curves(agent, asked.model)
-    starts = [lift_start(record, dense.time, agent.q[:, agent.moving]) for record in records]
+    joints = JointMap.of(dense, agent.name)
+    topics = state_and_goal(joints)
+    starts = [lift_start(record, dense.time, agent.q[:, agent.moving], topics) for record in records]
     angles = np.stack(
         [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
     )
     for i, curve in enumerate(curves):
-        yield compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
+        if joints.sliding[i]:
+            way = 1e3 * agent.q[:, agent.moving][:, i]
+            yield compared("robot_angle", curve.joint, curve.label, "mm", dense, way, 1e3 * angles[:, :, i])
+        else:
+            yield compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
     planned = np.array([curve.q[0] for curve in curves])
     for record, (_, how, known), own in zip(records, starts, np.degrees(angles), strict=True):
         notes.append(f"{record.source}: the lift begins {how} and lasts {duration:g} s")
         if known:
             notes.append(f"{record.source}: {known}")
-        off = float(np.abs(own[0] - planned).max())
+        off = float(np.abs(own[0] - planned)[~joints.sliding].max(initial=0.0))
         if off > ELSEWHERE:
             notes.append(f"{record.source}: the robot starts {off:.0f} deg off the prediction: is it this lift?")
         if record.tau is None:
@@ -147,7 +155,9 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
         return
     torques = np.stack([record.over_share(tau, SHARE, at, duration) for record, tau, at in felt])
     for i, curve in enumerate(curves):
-        yield compared("robot_torque", curve.joint, curve.label, "Nm", dense, curve.tau, torques[:, :, i])
+        yield compared(
+            "robot_torque", curve.joint, curve.label, joints.effort_unit(i), dense, curve.tau, torques[:, :, i]
+        )
     notes.append(
         "efforts are taken for the joints' torques with gravity's part in them, positive as the joint's angle; "
         "JointState does not say which a robot means"
@@ -156,7 +166,7 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
 
 
 def _other_reading(dense: Solution, agent: AgentTrajectory, q: Array, effort: Array) -> list[str]:
-    """Return a note if efforts (S, 7) at angles q (S, 7) fit better with another sign, or as torques beyond gravity."""
+    """Return a note if efforts (S, n) at angles q (S, n) fit better with another sign, or as torques beyond gravity."""
     robot, moving = agent_of(dense.scenario, agent.name, dense.urdfs), agent.moving
     full, data = np.zeros((len(q), robot.model.nq)), robot.model.createData()
     full[:, moving] = q

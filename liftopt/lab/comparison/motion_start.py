@@ -11,7 +11,6 @@ import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.robot.robot_record import SHORT, RobotRecord
-from liftopt.lab.robot.trajectory_files import GOAL_TOPIC
 from liftopt.solution.interpolation import linear
 from liftopt.types import Array
 
@@ -23,16 +22,16 @@ EARLIER = 1.0  # [s]: rest is looked for up to this before the best fit, which a
 # A goal that comes this much after its recorder subscribed is caught [s]: if it was missed, the recorder was just late.
 CONNECTED = 0.5
 TOGETHER = 0.1  # [s]: trajectory and goal, sent at once
-RECORD = f"rosbag record /robot/joint_states {GOAL_TOPIC}"
 
 
-def lift_start(record: RobotRecord, time: Array, q: Array) -> tuple[float, str, str]:
+def lift_start(record: RobotRecord, time: Array, q: Array, topics: str) -> tuple[float, str, str]:
     """Return when the lift began in a record [s], how that was found, and what to know of it (may be empty).
 
     Args:
         record: of one trial.
         time: (T,) of the predicted lift, from 0 [s].
-        q: (T, 7) predicted angles [rad].
+        q: (T, n) predicted positions [rad, m].
+        topics: of the robot's states and goals, to say what to record.
 
     Raises:
         InputError: the record is shorter than the lift, or its arm does not move.
@@ -44,7 +43,7 @@ def lift_start(record: RobotRecord, time: Array, q: Array) -> tuple[float, str, 
         before = [sent for sent in record.sent if sent <= start + SHORT]
         return before[-1] if before else record.sent[0], record.told_by, ""
     how = "where it moves as the prediction does at its start"
-    hint = f"its goal is not in the bag; start `{RECORD}` before the goal is sent"
+    hint = f"its goal is not in the bag; start `rosbag record {topics}` before the goal is sent"
     if record.missed is not None and 0.0 <= start - record.missed <= CONNECTED:
         how = "when its recorder subscribed to the goal's topic (just too late)"
         return record.missed, how, f"the arm is at least as late as its phase says: {hint}"
@@ -97,7 +96,7 @@ def _rest_before(record: RobotRecord, until: float, earliest: float) -> int | No
 
 
 def _away(q: Array, pose: Array) -> Array:
-    """Return how far postures (K, 7) are from one, the largest over joints (K,) [rad]."""
+    """Return how far postures (K, n) are from one, the largest over joints (K,) [rad]."""
     return np.asarray(np.abs(q - pose).max(axis=1))
 
 

@@ -26,7 +26,7 @@ GROUPS = {
     "robot_angle": "Robot, joint angle",
     "robot_torque": "Robot, joint torque",
 }
-QUANTITY = {"deg": "angle", "Nm": "torque", "m": "way", "N": "force"}
+QUANTITY = {"deg": "angle", "Nm": "torque", "m": "way", "mm": "way", "N": "force"}
 # Shoulder and elbow flexion, the joints of Figs. 13 and 14; of a whole person on both sides.
 ARM = ("Q5", "Q7", "right_Q5", "right_Q7", "left_Q5", "left_Q7")
 LEGS_AND_TRUNK = ("ankle", "knee", "hip", "Q2")

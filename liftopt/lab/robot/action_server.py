@@ -1,4 +1,4 @@
-"""Sawyer's joint trajectory action server, and what its modes ask of the arm at 100 Hz.
+"""Sawyer's joint trajectory action server, and what its modes ask of the arm at 100 Hz (-r 100).
 
 Read from the manufacturer's intera_sdk, commit 6614dec (Apache-2.0): intera_joint_trajectory_action, its minjerk.py
 and the defaults in intera_interface/cfg. The server knows three modes; ``torque`` is a client of the arm's torque
@@ -14,18 +14,18 @@ interface that streams the solved torques at 1 kHz, with the springs of joint_to
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from liftopt.lab.robot.command import PERIOD, Command
 from liftopt.lab.robot.joint_trajectory import JointTrajectory
+from liftopt.lab.robot.quintics import Quintics
 from liftopt.multibody.robots.sawyer import sawyer_limits
 from liftopt.types import Array
 
 Mode = Literal["velocity", "position", "position_w_id", "torque"]
 
-PERIOD = 0.01  # [s]: -r 100
 KP = 2.0  # [1/s]: SawyerVelocityJointTrajectoryActionServer.cfg; ki = kd = 0
 PATH_TOLERANCE = {"velocity": np.inf, "position": 0.2, "position_w_id": 0.2, "torque": np.inf}  # [rad]; cfg, -1 is none
 SPEED_RATIO = 0.3  # of the top speed: limb.py, set_joint_position_speed
@@ -33,21 +33,6 @@ TURNING = 1e-10  # [rad^2/s^2]: slopes whose product is less make the spline sto
 # The most that SawyerJointSpringsExample.cfg allows [Nm/rad, Nm s/rad]; its defaults are a third and a tenth of it.
 SPRING = np.array([30.0, 30.0, 15.0, 15.0, 9.0, 4.0, 4.0])
 SPRING_DAMPING = np.array([10.0, 7.5, 7.5, 5.0, 1.5, 1.5, 1.0])
-
-
-@dataclass(frozen=True)
-class Command:
-    """What the arm is told for one period; all (7,).
-
-    Attributes:
-        rate: velocity of the servo's reference [rad/s].
-        acceleration: fed forward by the arm through its own model [rad/s^2].
-        torque: on top of the arm's gravity compensation [Nm].
-    """
-
-    rate: Array
-    acceleration: Array
-    torque: Array
 
 
 class ActionServer:
@@ -106,20 +91,12 @@ class ActionServer:
         return Command(np.clip((planned - reference) / PERIOD, -self._top, self._top), acceleration, none)
 
 
-@dataclass(frozen=True)
-class MinimumJerk:
+class MinimumJerk(Quintics):
     """The server's curve through points: quintics with zero acceleration at each, whatever the points say.
 
     It takes positions, velocities and accelerations for three curves of their own, each with the mean of the slopes
     on both sides as its slope at a point, and zero where the slopes differ in sign, at the start and at the end.
-
-    Attributes:
-        time: (K,) of the points [s].
-        coefficients: (K - 1, 6, n) of each interval, by power of the time since its start.
     """
-
-    time: Array
-    coefficients: Array
 
     @classmethod
     def through(cls, time: Array, points: Array) -> MinimumJerk:
@@ -137,21 +114,6 @@ class MinimumJerk:
             10 * miss - 4 * gain, (-15 * miss + 7 * gain) / span, (6 * miss - 3 * gain) / span**2,
         ]  # fmt: skip
         return cls(time, np.stack(rows, axis=1))
-
-    def at(self, time: float) -> Array:
-        """Return the curve (n,) at ``time``; before the start and after the end it stands still."""
-        time = float(np.clip(time, self.time[0], self.time[-1]))
-        interval = min(int(np.searchsorted(self.time, time, side="right")) - 1, len(self.coefficients) - 1)
-        value: Array = (time - self.time[interval]) ** np.arange(6) @ self.coefficients[interval]
-        return value
-
-    def sampled(self, steps: int) -> tuple[Array, Array, Array]:
-        """Return times (M,), the curve and its slope (M, n) there: ``steps`` + 1 times in each interval, ends twice."""
-        since = np.diff(self.time)[:, None] * np.linspace(0.0, 1.0, steps + 1)
-        value = (since[..., None] ** np.arange(6)) @ self.coefficients
-        slope = (np.arange(1, 6) * since[..., None] ** np.arange(5)) @ self.coefficients[:, 1:]
-        n = value.shape[-1]
-        return (self.time[:-1, None] + since).ravel(), value.reshape(-1, n), slope.reshape(-1, n)
 
 
 def server_curve(trajectory: JointTrajectory, *more: Array) -> MinimumJerk:

@@ -1,4 +1,4 @@
-"""The exported motion on a simulated Sawyer: what it would do, and recordings as three trials would give them.
+"""The exported motion on a simulated robot: what it would do, and recordings as three trials would give them.
 
 The arm lifts alone. The person and the object are the force and the moment that the solution has at the gripper.
 Simulating the person as well would take a controller of the person, which nobody knows and which would decide the
@@ -13,13 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.errors import ModelError
+from liftopt.errors import InputError, ModelError
 from liftopt.lab.meant import the_robot
-from liftopt.lab.robot.action_server import PERIOD, ActionServer, Command, Mode
+from liftopt.lab.robot.action_server import ActionServer, Mode
+from liftopt.lab.robot.command import PERIOD, Command
 from liftopt.lab.robot.dry_run_plan import Plan
 from liftopt.lab.robot.joint_trajectory import JointTrajectory, joint_trajectory
 from liftopt.lab.robot.simulated_arm import STEP, SimulatedArm
-from liftopt.multibody.robots.sawyer import JOINT_SIGNS
+from liftopt.lab.robot.trajectory_controller import TrajectoryController
 from liftopt.solution.solution import Solution
 from liftopt.types import Array, Progress
 
@@ -27,8 +28,8 @@ BEFORE, AFTER = 0.5, 0.5  # recorded before the goal is sent and after the serve
 TICKS = round(PERIOD / STEP)
 RUNAWAY = 50.0  # [rad/s]: ten times what a joint can do; MuJoCo itself would start again at its own zero
 FASTEST = 2.0  # seconds of the plan in a second: an arm that is late cuts corners, the person's force does not jump
-# Estimates: no figures are published for Sawyer. Half the width of what differs between trials, and the noise (one
-# standard deviation) of what the arm reports.
+# Estimates: no figures are published for Sawyer, or known here of others. Half the width of what differs between
+# trials, and the noise (one standard deviation) of what the arm reports.
 FRICTION_SPREAD = 0.2  # of each joint's friction
 LOAD_SPREAD = 0.05  # of the person's part
 POSITION_NOISE, VELOCITY_NOISE = 2e-4, 5e-3  # [rad], [rad/s]
@@ -42,10 +43,10 @@ class Trial:
     """One run, in the robot's joint names, signs and order, at the K times of its ``DryRun``.
 
     Attributes:
-        position: (K, 7) where the joints were [rad].
-        torque: (K, 7) that they passed on [Nm].
+        position: (K, n) where the joints were [rad].
+        torque: (K, n) that they passed on [Nm].
         tip: (K, 3) where the gripper's grasp point was in the world [m].
-        measured_position, measured_velocity, measured_torque: (K, 7) what the arm reported: noise added.
+        measured_position, measured_velocity, measured_torque: (K, n) what the arm reported: noise added.
         outcome: how the server ended, in words.
         gave_up: whether it did before the end.
     """
@@ -65,12 +66,12 @@ class DryRun:
     """What the arm made of a trajectory.
 
     Attributes:
-        mode: of the action server.
+        mode: of Sawyer's action server; ``"position"`` of any other robot.
         trajectory: that was sent.
         goal_time: of the goal [s].
         time: (K,) every 10 ms, 0 where the goal was sent [s].
-        planned_position: (K, 7) the plan at those times, at rest before and after it [rad].
-        planned_torque: (K, 7) [Nm].
+        planned_position: (K, n) the plan at those times, at rest before and after it [rad].
+        planned_torque: (K, n) [Nm].
         planned_tip: (K, 3) [m].
         trials: of which friction, load, phase of the clocks and noise differ.
     """
@@ -94,23 +95,26 @@ def dry_run(
     progress: Progress | None = None,
     robot: str | None = None,
 ) -> DryRun:
-    """Simulate the action server and the arm; the same arguments give the same numbers.
+    """Simulate the controller and the arm; the same arguments give the same numbers.
 
     Args:
         solution: a solved lift.
-        mode: of the server.
-        goal_time: how long after the motion's end the server goes on [s].
+        mode: of Sawyer's action server; any other robot has ``"position"``.
+        goal_time: how long after the motion's end the controller goes on [s].
         trials: how many.
         seed: of what differs between them.
         progress: called with one line for each trial.
         robot: its name; None where there is only one.
 
     Raises:
-        InputError: the solution is not solved, MuJoCo is not installed, or no robot is the one that is meant.
+        InputError: the solution is not solved, MuJoCo is not installed, the robot has not that mode, or no robot is the
+            one that is meant.
         ModelError: the arm runs away.
     """
     arm = the_robot(solution, robot)
     trajectory, plan = joint_trajectory(solution, robot=arm.name), Plan.of(solution, arm.name)
+    if not trajectory.joints.is_sawyer and mode != "position":
+        raise InputError("--mode", mode, 'must be "position": the others are of Sawyer\'s action server')
     duration = float(trajectory.time[-1])
     first, last = -round(BEFORE / PERIOD), round((duration + goal_time + AFTER) / PERIOD)
     time = PERIOD * np.arange(first, last + 1, dtype=float)
@@ -137,33 +141,37 @@ def _trial(
     rng: np.random.Generator,
 ) -> Trial:
     stiff = mode != "torque"
-    friction = rng.uniform(1 - FRICTION_SPREAD, 1 + FRICTION_SPREAD, 7) * (1.0 if stiff else FRICTION_LEFT)
+    joints, n = trajectory.joints, len(trajectory.names)
+    friction = rng.uniform(1 - FRICTION_SPREAD, 1 + FRICTION_SPREAD, n) * (1.0 if stiff else FRICTION_LEFT)
     load = rng.uniform(1 - LOAD_SPREAD, 1 + LOAD_SPREAD)
     phase = int(rng.integers(TICKS))  # of the server's clock to the recorder's [steps]
     arm = SimulatedArm(solution, friction, stiff, robot)
-    streamed, holding = (None, np.zeros(7)) if stiff else _above_gravity(arm, trajectory, plan)
-    server = ActionServer(mode, trajectory, goal_time, streamed)
-    arm.rest(JOINT_SIGNS * trajectory.position[0], load * plan.force[0], load * plan.moment[0])
-    noise = rng.standard_normal((len(time), 3, 7))
+    streamed, holding = (None, np.zeros(n)) if stiff else _above_gravity(arm, trajectory, plan)
+    server = (
+        ActionServer(mode, trajectory, goal_time, streamed) if joints.is_sawyer else TrajectoryController(trajectory)
+    )
+    arm.rest(joints.signs * trajectory.position[0], load * plan.force[0], load * plan.moment[0])
+    noise = rng.standard_normal((len(time), 3, n))
     noise *= np.array([POSITION_NOISE, VELOCITY_NOISE, 1.0])[:, None]
     noise[:, 2] *= TORQUE_NOISE * solution[robot].limits.tau_upper
     reached, played, fastest = 0, 0, round(FASTEST * PERIOD / plan.step)
-    command = Command(np.zeros(7), np.zeros(7), holding)  # before the goal: hold still
-    states, tips = np.zeros((len(time), 3, 7)), np.zeros((len(time), 3))
+    command = Command(np.zeros(n), np.zeros(n), holding)  # before the goal: hold still
+    states, tips = np.zeros((len(time), 3, n)), np.zeros((len(time), 3))
     for k in range(len(time)):
-        states[k] = JOINT_SIGNS * np.stack([arm.position, arm.velocity, arm.torque])
+        states[k] = joints.signs * np.stack([arm.position, arm.velocity, arm.torque])
         if not np.all(np.abs(states[k, 1]) < RUNAWAY):
-            raise ModelError(f"the simulated arm runs away in {mode} mode at {time[k]:.2f} s; try position_w_id")
+            advice = "; try position_w_id" if joints.is_sawyer else ""
+            raise ModelError(f"the simulated arm runs away in {mode} mode at {time[k]:.2f} s{advice}")
         reached = plan.progress(states[k, 0], reached, time[k])
         played = min(reached, played + fastest)
         force, moment = load * plan.force[played], load * plan.moment[played]
         for step in range(TICKS):
             now = time[k] + STEP * step
             if now >= 0.0 and (step == phase or not stiff):
-                q, v, reference = (JOINT_SIGNS * row for row in (arm.position, arm.velocity, arm.reference))
+                q, v, reference = (joints.signs * row for row in (arm.position, arm.velocity, arm.reference))
                 command = server.command(now, q + noise[k, 0], v + noise[k, 1], reference)
             rate, acceleration, torque = (
-                JOINT_SIGNS * row for row in (command.rate, command.acceleration, command.torque)
+                joints.signs * row for row in (command.rate, command.acceleration, command.torque)
             )
             arm.advance(rate, acceleration, torque, force, moment)
             if step == 0:
@@ -173,11 +181,12 @@ def _trial(
 
 
 def _above_gravity(arm: SimulatedArm, trajectory: JointTrajectory, plan: Plan) -> tuple[Array, Array]:
-    """Return what to stream (K, 7), and (7,) to hold the start: torques without what the arm adds, in its signs.
+    """Return what to stream (K, n), and (n,) to hold the start: torques without what the arm adds, in its signs.
 
     The last point is one of rest, as the server takes it.
     """
-    gravity = np.stack([JOINT_SIGNS * arm.gravity(JOINT_SIGNS * q) for q in trajectory.position])
+    signs = trajectory.joints.signs
+    gravity = np.stack([signs * arm.gravity(signs * q) for q in trajectory.position])
     streamed = plan.at(plan.torque, trajectory.time) - gravity
     streamed[-1] = plan.torque[-1] - gravity[-1]
     return streamed, plan.torque[0] - gravity[0]

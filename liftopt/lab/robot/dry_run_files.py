@@ -12,11 +12,12 @@ import numpy as np
 from liftopt.lab.robot.bags import Record, write_bag
 from liftopt.lab.robot.dry_run import BEFORE, DryRun, Trial
 from liftopt.lab.robot.dry_run_summary import Summary
+from liftopt.lab.robot.export_formats import goal_topic, state_topic
 from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, RosMessages
 from liftopt.lab.robot.trajectory_files import goal_records
+from liftopt.types import Array
 
-STATE_TOPIC = "/robot/joint_states"
-HEAD = "head_pan"  # the arm reports it among its joints
+HEAD = "head_pan"  # Sawyer reports it among its joints
 APART = 60 * SECOND  # the trials begin a minute from each other, the first a minute after time 0
 
 
@@ -42,17 +43,19 @@ def write_dry_run(run: DryRun, summary: Summary, folder: Path) -> list[str]:
 
 
 def _records(messages: RosMessages, run: DryRun, trial: Trial, start: int) -> Iterator[Record]:
-    names = [HEAD, *run.trajectory.names]
-    sent = False
+    sawyer, joints = run.trajectory.joints.is_sawyer, run.trajectory.joints
+    names = [*([HEAD] if sawyer else []), *joints.names]
+    topic, ahead = goal_topic(joints), np.zeros(len(names) - len(joints.names))
+    states, sent = state_topic(joints), False
     for k, time in enumerate(run.time):
         stamp = start + round((float(time) + BEFORE) * SECOND)
         if time >= -1e-9 and not sent:
             sent = True
-            goal = list(goal_records(messages, run.trajectory, run.goal_time, stamp))
+            goal = list(goal_records(messages, run.trajectory, run.goal_time, stamp, topic))
             yield from goal[:1] if run.mode == "torque" else goal
         rows = (trial.measured_position[k], trial.measured_velocity[k], trial.measured_torque[k])
-        state = messages.joint_state(stamp, names, *(np.append(0.0, row) for row in rows))
-        yield Record(STATE_TOPIC, JOINT_STATE, stamp, state)
+        state = messages.joint_state(stamp, names, *(np.append(ahead, row) for row in rows))
+        yield Record(states, JOINT_STATE, stamp, state)
 
 
 def _write_netcdf(run: DryRun, path: Path) -> None:
@@ -64,12 +67,14 @@ def _write_netcdf(run: DryRun, path: Path) -> None:
         "xyz": ["x", "y", "z"],
     }
     joints, trials = ("time", "joint"), ("trial", "time", "joint")
+    slides = run.trajectory.joints.sliding.any()
+    angle, torque = ("rad or m", "N m or N") if slides else ("rad", "N m")
     variables: dict[str, Any] = {
-        "planned_position": (joints, run.planned_position, "rad", "planned joint angle"),
-        "planned_torque": (joints, run.planned_torque, "N m", "planned joint torque"),
+        "planned_position": (joints, run.planned_position, angle, "planned joint angle"),
+        "planned_torque": (joints, run.planned_torque, torque, "planned joint torque"),
         "planned_tip": (("time", "xyz"), run.planned_tip, "m", "planned grasp point of the robot, world axes"),
-        "position": (trials, np.stack([t.position for t in run.trials]), "rad", "joint angle"),
-        "torque": (trials, np.stack([t.torque for t in run.trials]), "N m", "torque that the joint passed on"),
+        "position": (trials, np.stack([t.position for t in run.trials]), angle, "joint angle"),
+        "torque": (trials, np.stack([t.torque for t in run.trials]), torque, "torque that the joint passed on"),
         "tip": (("trial", "time", "xyz"), np.stack([t.tip for t in run.trials]), "m", "grasp point, world axes"),
     }
     data = {
@@ -89,11 +94,13 @@ def _plot(run: DryRun) -> bytes:
     with rc_context(STYLE):
         figure, grid = panels(len(run.trajectory.names) + 1, 2, height=0.9)
         for j, name in enumerate(run.trajectory.names):
+            slides = bool(run.trajectory.joints.sliding[j])
+            shown = _millimetres if slides else np.degrees
             sides = zip(
                 grid[j],
-                (np.degrees(run.planned_position[:, j]), run.planned_torque[:, j]),
-                ([np.degrees(t.position[:, j]) for t in run.trials], [t.torque[:, j] for t in run.trials]),
-                ("deg", "Nm"),
+                (shown(run.planned_position[:, j]), run.planned_torque[:, j]),
+                ([shown(t.position[:, j]) for t in run.trials], [t.torque[:, j] for t in run.trials]),
+                ("mm", "N") if slides else ("deg", "Nm"),
                 strict=True,
             )
             for axes, planned, trials, unit in sides:
@@ -118,3 +125,7 @@ def _plot(run: DryRun) -> bytes:
         for axes in grid[-1]:
             axes.set_xlabel("time since the goal was sent [s]")
         return rendered(figure, "svg")
+
+
+def _millimetres(values: Array) -> Array:
+    return 1e3 * values

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from liftopt.lab.meant import the_robot
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.simulated_arm import STEP
-from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.multibody.trajectory import AgentTrajectory, agent_trajectory, cross, grasps_of
 from liftopt.scenario.build import agent_of, object_of
 from liftopt.solution.interpolation import linear, resample
@@ -31,7 +31,7 @@ class Plan:
     Attributes:
         step: between rows of the motion [s].
         time: (K,) [s].
-        position, torque: (K, 7) [rad, Nm].
+        position, torque: (K, n) [rad, Nm].
         tip: (K, 3) the grasp point in the world [m].
         force, moment: (K, 3) on the gripper at that point, world axes [N, Nm].
     """
@@ -57,9 +57,9 @@ class Plan:
         """
         interval = float(solution.time[1] - solution.time[0])
         dense = resample(solution, max(1, round(interval / STEP / 2)))
-        arm = the_robot(dense, robot)
-        force, moment, torque = -arm.grasp_force[:, 0], -arm.grasp_moment[:, 0], JOINT_SIGNS * arm.tau[:, arm.moving]
-        before, after = (_at_rest(dense, arm, k) for k in (0, -1))
+        arm, signs = the_robot(dense, robot), JointMap.of(dense, robot).signs
+        force, moment, torque = -arm.grasp_force[:, 0], -arm.grasp_moment[:, 0], signs * arm.tau[:, arm.moving]
+        before, after = (_at_rest(dense, arm, signs, k) for k in (0, -1))
         rows = [
             np.vstack([first, rows, last])
             for first, rows, last in zip(before, (torque, force, moment), after, strict=True)
@@ -67,7 +67,7 @@ class Plan:
         return cls(
             float(dense.time[1]),
             np.concatenate([[-AT_ONCE], dense.time, [dense.time[-1] + AT_ONCE]]),
-            _ends_repeated(JOINT_SIGNS * arm.q[:, arm.moving]),
+            _ends_repeated(signs * arm.q[:, arm.moving]),
             rows[0],
             _ends_repeated(arm.grasp_position[:, 0]),
             rows[1],
@@ -92,8 +92,8 @@ def _ends_repeated(rows: Array) -> Array:
     return np.vstack([rows[:1], rows, rows[-1:]])
 
 
-def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Array, Array]:
-    """Return a robot's torques (7,), force and moment on its gripper (3,) that hold the object still where it is."""
+def _at_rest(dense: Solution, robot: AgentTrajectory, signs: Array, k: int) -> tuple[Array, Array, Array]:
+    """Return a robot's torques (n,), force and moment on its gripper (3,) that hold the object still where it is."""
     lifted = object_of(dense.scenario, dense.urdfs)
     arms = dense.object.grasp_position[k] - dense.object.pose[k, :3]
     columns: list[Array] = []
@@ -115,4 +115,4 @@ def _at_rest(dense: Solution, robot: AgentTrajectory, k: int) -> tuple[Array, Ar
     still = agent_trajectory(
         agent_of(dense.scenario, robot.name, dense.urdfs), q, none, none, own[None, :3], own[None, 3:]
     )
-    return JOINT_SIGNS * still.tau[0, robot.moving], -own[:3], -own[3:]
+    return signs * still.tau[0, robot.moving], -own[:3], -own[3:]

@@ -8,15 +8,13 @@ import numpy as np
 
 from liftopt.errors import InputError
 from liftopt.lab.meant import the_robot
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.multibody.bounds import checked_number
-from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.interpolation import motion_between
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 
-# Sawyer's own, base to flange; Q1 to Q7 of Table 3 in this order, the fourth with the other sign (JOINT_SIGNS).
-JOINTS = tuple(f"right_j{i}" for i in range(7))
-RATE = 100.0  # of the action server [Hz]
+RATE = 100.0  # of trajectory controllers, Sawyer's action server among them [Hz]
 SHORTEST = 0.01  # of the last interval, as a share of the others
 
 
@@ -25,21 +23,33 @@ class JointTrajectory:
     """A motion at K times in the robot's joint names, signs and order.
 
     Attributes:
-        names: (7,) of the joints.
+        joints: the robot's n.
         time: (K,) from the start [s].
-        position, velocity, acceleration: (K, 7) [rad, rad/s, rad/s^2].
+        position, velocity, acceleration: (K, n) [rad, rad/s, rad/s^2; m, m/s, m/s^2 where a joint slides].
     """
 
-    names: tuple[str, ...]
+    joints: JointMap
     time: Array
     position: Array
     velocity: Array
     acceleration: Array
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """(n,) of the joints."""
+        return self.joints.names
+
+    @property
     def nanoseconds(self) -> tuple[int, ...]:
         """(K,) times as the integers that messages hold [ns]."""
         return tuple(round(1e9 * float(t)) for t in self.time)
+
+    def with_held(self) -> JointTrajectory:
+        """Return it with the joints that are held, at rest where they are held, after those that move."""
+        still = np.tile([value for _, value in self.joints.held], (len(self.time), 1))
+        velocity, acceleration = (np.hstack([rows, 0.0 * still]) for rows in (self.velocity, self.acceleration))
+        position = np.hstack([self.position, still])
+        return JointTrajectory(self.joints.with_held(), self.time, position, velocity, acceleration)
 
 
 def joint_trajectory(solution: Solution, rate: float = RATE, robot: str | None = None) -> JointTrajectory:
@@ -58,11 +68,16 @@ def joint_trajectory(solution: Solution, rate: float = RATE, robot: str | None =
     rate = checked_number("--rate", rate, 10.0, 1000.0, "Hz")
     duration = float(solution.time[-1])
     time = np.append(np.arange(int(np.ceil(duration * rate - SHORTEST))) / rate, duration)
-    return JointTrajectory(JOINTS, time, *robot_motion(solution, time, robot))
+    return trajectory_at(solution, time, robot)
+
+
+def trajectory_at(solution: Solution, time: Array, robot: str | None = None) -> JointTrajectory:
+    """Return a robot's motion at ``time`` (K,), the solution solved or not."""
+    return JointTrajectory(JointMap.of(solution, robot), time, *robot_motion(solution, time, robot))
 
 
 def robot_motion(solution: Solution, time: Array, robot: str | None = None) -> tuple[Array, Array, Array]:
-    """Return position, velocity and acceleration (T, 7) of a robot's joints, in its own signs, at ``time`` (T,)."""
-    arm = the_robot(solution, robot)
-    q, v, a = (JOINT_SIGNS * rows[:, arm.moving] for rows in (arm.q, arm.v, arm.a))
+    """Return position, velocity and acceleration (T, n) of a robot's joints, in its own signs, at ``time`` (T,)."""
+    arm, signs = the_robot(solution, robot), JointMap.of(solution, robot).signs
+    q, v, a = (signs * rows[:, arm.moving] for rows in (arm.q, arm.v, arm.a))
     return motion_between(solution.time, q, v, a, time)

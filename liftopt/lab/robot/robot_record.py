@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,10 +16,10 @@ import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.extra import check_extra
-from liftopt.lab.robot.joint_trajectory import JOINTS
+from liftopt.lab.robot.export_formats import GOAL
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.ros_messages import FEEDBACK, JOINT_STATE, LOG, ROS1_GOAL, ROS2_GOAL, SECOND, TRAJECTORY
-from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
-from liftopt.multibody.robots.sawyer import JOINT_SIGNS
+from liftopt.lab.robot.trajectory_files import TRAJECTORY_TOPIC
 from liftopt.solution.interpolation import linear
 from liftopt.types import Array
 
@@ -31,13 +31,13 @@ SUBSCRIBED = re.compile(r"Subscribing to (\S+)")  # rosbag record says so on /ro
 
 @dataclass(frozen=True)
 class RobotRecord:
-    """One trial in the joints and signs of Table 3, as solutions have them.
+    """One trial in the n joints and signs that solutions have, Sawyer's those of Table 3; metres where a joint slides.
 
     Attributes:
         source: the bag.
         time: (K,) since its first joint state, on the recorder's clock [s].
-        q: (K, 7) angles [rad].
-        tau: (K, 7) efforts, as they were recorded but for the joints' signs [Nm]; None if the bag has none.
+        q: (K, n) angles [rad].
+        tau: (K, n) efforts, as they were recorded but for the joints' signs [Nm]; None if the bag has none.
         sent: when trajectories or goals were sent, in order [s]; empty where the bag does not say.
         told_by: how that is known, in words.
         missed: when the recorder subscribed to the goal's topic, where it then caught no goal [s]; else None.
@@ -52,7 +52,7 @@ class RobotRecord:
     missed: float | None = None
 
     def over_share(self, values: Array, share: Array, start: float, duration: float) -> Array:
-        """Return ``values`` (K, 7) at ``share`` (S,) of a lift from ``start`` that lasts ``duration`` [s]: (S, 7).
+        """Return ``values`` (K, n) at ``share`` (S,) of a lift from ``start`` that lasts ``duration`` [s]: (S, n).
 
         Raises:
             InputError: the bag begins after the lift does, or ends before.
@@ -65,24 +65,25 @@ class RobotRecord:
         return linear(self.time, values, start + share * duration)
 
 
-def read_robot_record(path: Path) -> RobotRecord:
+def read_robot_record(path: Path, joints: JointMap) -> RobotRecord:
     """Return one trial.
 
     Messages without the arm's joints (those of the gripper) are left aside.
 
     Args:
         path: a ROS 1 bag, or the folder of a ROS 2 bag.
+        joints: of the arm.
 
     Raises:
         InputError: the bag cannot be read, or does not hold the arm's joint states; it names bag, topic and joint.
     """
-    heard = _messages(path)
+    heard, names = _messages(path, joints.names), joints.names
     states = heard.states
     if not states:
-        raise InputError(str(path), NO_VALUE, f"holds no {JOINT_STATE} with the joints {JOINTS[0]} to {JOINTS[-1]}")
+        raise InputError(str(path), NO_VALUE, f"holds no {JOINT_STATE} with the joints {names[0]} to {names[-1]}")
     topic = max(states, key=lambda name: len(states[name]))
     where = f"{path}, topic {topic}"
-    rows = [_row(where, number, message) for number, (_, message) in enumerate(states[topic], start=1)]
+    rows = [_row(where, number, message, names) for number, (_, message) in enumerate(states[topic], start=1)]
     arrived = np.array([arrival for arrival, _ in states[topic]])
     stamp = np.array([row[0] for row in rows])
     # Stamps are evener than arrivals, but they are of the robot's clock, and the goal's arrival is of the recorder's.
@@ -90,9 +91,9 @@ def read_robot_record(path: Path) -> RobotRecord:
     stamp, order = np.unique(stamp, return_index=True)
     if len(stamp) < 2:
         raise InputError(where, f"{len(stamp)} messages", "must be at least two, at different times")
-    q = JOINT_SIGNS * np.stack([rows[k][1] for k in order])
+    q = joints.signs * np.stack([rows[k][1] for k in order])
     efforts = [rows[k][2] for k in order]
-    tau = None if any(len(effort) == 0 for effort in efforts) else JOINT_SIGNS * np.stack(efforts)
+    tau = None if any(len(effort) == 0 for effort in efforts) else joints.signs * np.stack(efforts)
 
     def since(moments: list[int]) -> tuple[float, ...]:
         return tuple((moment - int(stamp[0])) / SECOND for moment in sorted(moments))
@@ -109,12 +110,14 @@ class _Heard:
     """What a bag holds of a trial; times are arrivals [ns].
 
     Attributes:
+        joints: of the arm.
         states: the arm's states by topic.
         commands: trajectories and goals.
         followed: by goal, when the action server began with it, as each of its feedbacks says.
         subscribed: when the recorder subscribed to the topics of goal and trajectory, as it said itself.
     """
 
+    joints: frozenset[str]
     states: dict[str, list[tuple[int, Any]]] = field(default_factory=lambda: defaultdict(list))
     commands: list[int] = field(default_factory=list)
     followed: dict[str, list[int]] = field(default_factory=lambda: defaultdict(list))
@@ -132,25 +135,30 @@ class _Heard:
         """Take in one message of the kinds in ``HEARD``."""
         if kind in COMMANDS:
             self.commands.append(arrived)
-        elif kind == FEEDBACK and set(JOINTS) <= set(message.feedback.joint_names):
+        elif kind == FEEDBACK and self.joints <= set(message.feedback.joint_names):
             self.followed[message.status.goal_id.id].append(arrived - _moment(message.feedback.desired.time_from_start))
-        elif kind == LOG and (found := SUBSCRIBED.match(message.msg)) and found[1] in (GOAL_TOPIC, TRAJECTORY_TOPIC):
+        elif kind == LOG and (found := SUBSCRIBED.match(message.msg)) and _is_told_on(found[1]):
             self.subscribed.append(_moment(message.header.stamp) or arrived)
-        elif kind == JOINT_STATE and set(JOINTS) <= set(message.name):
+        elif kind == JOINT_STATE and self.joints <= set(message.name):
             self.states[topic].append((arrived, message))
+
+
+def _is_told_on(topic: str) -> bool:
+    """Whether a robot is told on a topic what to do."""
+    return topic == TRAJECTORY_TOPIC or topic.endswith(f"/{GOAL}")
 
 
 HEARD = (JOINT_STATE, FEEDBACK, LOG, *COMMANDS)
 
 
-def _messages(path: Path) -> _Heard:
+def _messages(path: Path, joints: Sequence[str]) -> _Heard:
     check_extra("rosbags", "read ROS bags")
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
     if not path.exists():
         raise InputError(str(path), NO_VALUE, "no such bag")
-    heard = _Heard()
+    heard = _Heard(frozenset(joints))
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
             wanted = [one for one in reader.connections if one.msgtype in HEARD]
@@ -163,9 +171,9 @@ def _messages(path: Path) -> _Heard:
     return heard
 
 
-def _row(where: str, number: int, message: Any) -> tuple[int, Array, Array]:
-    """Return stamp [ns], angles and efforts (7,) of the arm; no efforts where the message has none."""
-    columns = [message.name.index(joint) for joint in JOINTS]
+def _row(where: str, number: int, message: Any, joints: Sequence[str]) -> tuple[int, Array, Array]:
+    """Return stamp [ns], angles and efforts (n,) of the arm; no efforts where the message has none."""
+    columns = [message.name.index(joint) for joint in joints]
     found = []
     fields: tuple[tuple[str, Callable[[], Any]], ...] = (
         ("position", lambda: message.position),
@@ -180,7 +188,7 @@ def _row(where: str, number: int, message: Any) -> tuple[int, Array, Array]:
             raise InputError(
                 f"{where}, message {number}", f"{len(values)} of {kind}", f"names {len(message.name)} joints"
             )
-        for joint, column in zip(JOINTS, columns, strict=True):
+        for joint, column in zip(joints, columns, strict=True):
             if not abs(values[column]) < LARGEST:  # NaN fails too
                 raise InputError(
                     f"{where}, message {number}", f"{kind} of {joint} {values[column]:g}", f"must be within {LARGEST:g}"

@@ -11,6 +11,7 @@ from liftopt.multibody.robots.examination import Examination, examined
 from liftopt.multibody.robots.known_arms import known_arms
 from liftopt.multibody.robots.known_robot import KnownRobot
 from liftopt.multibody.robots.known_sawyer import SAWYER
+from liftopt.multibody.robots.weight_findings import WEIGHT
 
 
 def known_robots() -> dict[str, KnownRobot]:
@@ -49,5 +50,5 @@ def examined_robot(robot: KnownRobot) -> Examination:
         return found
     fix = "the torques of its motors are smaller than those that are computed"
     springs = DataFinding("weight.springs", "warned", "weight", NO_VALUE, robot.springs, fix)
-    order = [*found.findings, springs]
+    order = [*(one for one in found.findings if one.code != WEIGHT), springs]
     return Examination(found.chain, tuple(sorted(order, key=lambda one: SEVERITIES.index(one.severity))))

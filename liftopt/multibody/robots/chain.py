@@ -13,7 +13,7 @@ from math import isfinite
 import numpy as np
 import pinocchio as pin
 
-from liftopt.errors import InputError
+from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.description import ONE_AXIS, RobotDescription, RobotJoint
 from liftopt.multibody.robots.joint_ranges import JointRange, range_of
@@ -151,8 +151,18 @@ def base_of(description: RobotDescription, base: str | None) -> str:
         return description.link(base).name
     if len(description.roots) != 1:
         roots = ", ".join(description.roots)
-        raise InputError(description.source, list(description.roots), f"has several roots ({roots}); say base = ...")
+        likely = max(description.roots, key=lambda root: _carried(description, root))
+        raise InputError(
+            description.source,
+            NO_VALUE,
+            f"has several roots ({roots}); say which is bolted down: base = {likely!r} carries the most joints",
+        )
     return description.roots[0]
+
+
+def _carried(description: RobotDescription, link: str) -> int:
+    """Return how many joints that can move a link carries, near and far."""
+    return sum((joint.kind in ONE_AXIS) + _carried(description, joint.child) for joint in description.below(link))
 
 
 def _moves(joint: RobotJoint, given: Mapping[str, float], description: RobotDescription) -> bool:

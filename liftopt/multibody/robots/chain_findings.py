@@ -8,6 +8,7 @@ from liftopt.errors import NO_VALUE
 from liftopt.multibody.robots.chain import OTHERS, RobotChain
 from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.multibody.robots.description import RobotDescription
+from liftopt.multibody.robots.tool import UNTURNED, likely_direction
 
 MOST_NAMED = 6
 
@@ -32,6 +33,10 @@ def chain_findings(chain: RobotChain) -> Iterator[DataFinding]:
         more = f" and {len(held) - MOST_NAMED} more" if len(held) > MOST_NAMED else ""
         yield DataFinding("joints.held", "assumed", "joints that are held", len(held), named + more,
                           "say locked.JOINT for other positions")  # fmt: skip
+    if (direction := likely_direction(chain.T_last_grasp)) != UNTURNED:
+        message = f"a hand there points along its {direction}, away from the joint before it"
+        yield DataFinding("tool.direction", "assumed", f"grasp_frame {chain.grasp_frame}", NO_VALUE, message,
+                          "say tool.direction for another axis")  # fmt: skip
     for joint in chain.joints:
         if joint.kind == "prismatic":
             message = "it slides: a squared force counts where a squared torque does, 1 N like 1 Nm"

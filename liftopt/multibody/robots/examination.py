@@ -15,6 +15,7 @@ from liftopt.multibody.robots.given_limits import GivenLimits, with_limits
 from liftopt.multibody.robots.grasp_frames import grasp_candidates, rivals
 from liftopt.multibody.robots.limit_findings import limit_findings
 from liftopt.multibody.robots.mass_findings import mass_findings
+from liftopt.multibody.robots.weight_findings import weight_findings
 
 AMBIGUOUS = "grasp.ambiguous"  # which of several hands it holds with is for the user to say
 
@@ -98,7 +99,16 @@ def examined(
         *chain_findings(chain),
         *mesh_findings(description),
     ]
+    if not any(one.severity == "refused" for one in found):
+        found.extend(weight_findings(chain))
     return Examination(chain, tuple(sorted(found, key=lambda one: SEVERITIES.index(one.severity))))
+
+
+def refuse(found: Examination, source: str) -> None:
+    """Raise ``InputError`` for the gravest finding for which a robot cannot lift, if there is one."""
+    for finding in found.findings:
+        if finding.severity == "refused" or finding.code == AMBIGUOUS:
+            raise finding.refusal(source)
 
 
 def _proposed(description: RobotDescription, base: str) -> tuple[str, DataFinding]:

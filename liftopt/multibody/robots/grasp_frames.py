@@ -65,7 +65,7 @@ def _candidate(description: RobotDescription, base: str, link: str) -> GraspCand
     path = description.joints_between(base, link) or ()
     moving = [joint for joint in path if joint.kind in ONE_AXIS]
     words = [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])\d*|[A-Z]?[a-z]+\d*", link)]
-    if not moving or any(_is_finger(joint) for joint in moving) or NOT & set(words):
+    if not moving or any(_is_finger(joint, moving) for joint in moving) or NOT & set(words):
         return None
     arm = (moving[0].name, moving[-1].name)
     for rank, likely in enumerate(WORDS):
@@ -79,8 +79,10 @@ def _candidate(description: RobotDescription, base: str, link: str) -> GraspCand
     return None
 
 
-def _is_finger(joint: RobotJoint) -> bool:
-    return joint.mimic is not None or FINGER.search(joint.name) is not None
+def _is_finger(joint: RobotJoint, path: list[RobotJoint]) -> bool:
+    """Return whether a joint moves a finger; an elbow may follow a joint before it, a finger follows one beside it."""
+    follows = joint.mimic is not None and all(joint.mimic.joint != other.name for other in path)
+    return follows or FINGER.search(joint.name) is not None
 
 
 def _depth(description: RobotDescription, link: str) -> int:

@@ -68,7 +68,8 @@ def known_arms() -> Iterator[KnownRobot]:
                      payload=3.5, payload_source=_published("UFACTORY"))  # fmt: skip
     yield KnownRobot("z1", "Z1 with gripper", "Unitree", "z1_description/urdf/z1.urdf", "world", "gripperStator",
                      payload=3.0, payload_source=UNITREE)  # fmt: skip
-    yield KnownRobot("so100", "SO-ARM100", "The Robot Studio", "so_arm_description/urdf/so100.urdf", "base", "gripper")
+    yield KnownRobot("so100", "SO-ARM100", "The Robot Studio", "so_arm_description/urdf/so100.urdf", "base", "gripper",
+                     direction="-y", front_deg=-90.0)  # fmt: skip
     yield KnownRobot("so101", "SO-ARM101", "The Robot Studio", "so_arm_description/urdf/so101.urdf", "base_link",
                      "gripper_frame_link")  # fmt: skip
     yield from _two_arms("baxter", "Baxter", RETHINK, "baxter_description/urdf/baxter.urdf", "base", "{side}_gripper",
@@ -91,7 +92,7 @@ def known_arms() -> Iterator[KnownRobot]:
                          payload_source=STASSE_2017)  # fmt: skip
     trunk = {"torso_pitch": 0.0, "torso_roll": 0.0, "torso_yaw": 0.0}
     yield from _two_arms("icub", "iCub", IIT, "icub_description/robots/icub.urdf", "base_link", "{s}_gripper",
-                         locked=trunk)  # fmt: skip
+                         locked=trunk, front_deg=180.0)  # fmt: skip
     yield from _two_arms("pr2", "PR2", "Willow Garage", "pr2_description/urdf/pr2.urdf", "base_footprint",
                          "{s}_gripper_tool_frame", locked={"torso_lift_joint": 0.0115}, payload=1.8,
                          payload_source=WILLOW_GARAGE, springs=PR2_SPRINGS)  # fmt: skip

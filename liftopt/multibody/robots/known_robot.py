@@ -26,6 +26,8 @@ class KnownRobot:
         locked: joints between them that are held, with their positions [rad, m].
         payload: that its maker publishes [kg], or None where none is known here.
         payload_source: of the payload.
+        direction: axis of the grasp frame that points away from the robot (``"-x"`` ...); None: the likely one.
+        front_deg: where its front is, about z from x of its base [deg].
         springs: what bears part of its weight beside its motors, in words; its torques are smaller than computed.
         own_urdf: writes the URDF of one that liftopt has itself.
     """
@@ -39,6 +41,8 @@ class KnownRobot:
     locked: Mapping[str, float] = field(default_factory=dict)
     payload: float | None = None
     payload_source: Source | None = None
+    direction: str | None = None
+    front_deg: float = 0.0
     springs: str = ""
     own_urdf: Callable[[], str] | None = None
 

@@ -14,6 +14,7 @@ from liftopt.multibody.robots.joint_ranges import JointRange
 ENOUGH = 3  # joints from which one value for all of them looks like a placeholder
 LARGEST_EFFORT = 1000.0  # of a joint that turns [Nm]: the largest arms that work beside people have 450
 LARGEST_VELOCITY = 20.0  # [rad/s]: fast arms have 4 to 6
+ROUNDING = 1e-6  # [rad, m]
 WIDEST = 8.0 * 3.141592653589793  # [rad]: four turns
 
 
@@ -65,10 +66,14 @@ def _range(joint: RobotJoint, ends: JointRange) -> Iterator[DataFinding]:
         yield DataFinding("range.wide", "warned", where, shown, "it is more than four turns", fix)
     if joint.soft_lower is not None and joint.soft_upper is not None and ends.source == "limits":
         lower, upper = joint.soft_lower, joint.soft_upper
+        shown = f"{lower:.4g} to {upper:.4g}"
         if lower >= upper or lower >= ends.upper or upper <= ends.lower:
             message = "no part of its range lies between its soft limits, which are left aside"
-            yield DataFinding("range.soft_outside", "warned", f"joint {joint.name}: soft limits",
-                              f"{lower:.4g} to {upper:.4g}", message, fix)  # fmt: skip
+            yield DataFinding("range.soft_outside", "warned", f"joint {joint.name}: soft limits", shown, message, fix)
+        elif lower < ends.lower - ROUNDING or upper > ends.upper + ROUNDING:
+            message = "they lie outside its limits, which hold"
+            yield DataFinding("range.soft_wider", "assumed", f"joint {joint.name}: soft limits", shown, message,
+                              f"{fix} for others")  # fmt: skip
 
 
 def _largest(joint: RobotJoint, name: str, value: float | None) -> Iterator[DataFinding]:

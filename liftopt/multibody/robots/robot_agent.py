@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
-from liftopt.errors import InputError
-from liftopt.multibody.agent import Agent, Grasp, JointLimits
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.bounds import checked_number
-from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.description import RobotDescription
-from liftopt.multibody.robots.examination import AMBIGUOUS, examined
+from liftopt.multibody.robots.examination import examined, refuse
 from liftopt.multibody.robots.given_limits import GivenLimits
+from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_urdf import robot_urdf
-from liftopt.multibody.urdf import load_model
+from liftopt.multibody.robots.tool import UNTURNED, likely_direction
+from liftopt.multibody.robots.written_robot import written_robot
 from liftopt.types import Array
 
 
@@ -27,9 +25,14 @@ def robot_agent(
     base: str | None = None,
     tool_length: float = 0.0,
     tool_mass: float = 0.0,
+    tool_direction: str | None = UNTURNED,
+    tool_turn: float = 0.0,
     locked: Mapping[str, float] | None = None,
     limits: Mapping[str, GivenLimits] | None = None,
     posture: Mapping[str, float] | None = None,
+    joint_weights: Mapping[str, float] | None = None,
+    sliding: float = 1.0,
+    ahead: Array | None = None,
 ) -> Agent:
     """Return a robot as an agent whose base is bolted down; it holds at ``<name>_grasp``, the tool's tip.
 
@@ -39,11 +42,17 @@ def robot_agent(
         T_world_base: (4, 4) placement of its base link.
         grasp_frame: name of the link that carries the tool; None takes the one that is proposed, if it is the only one.
         base: name of the link that is bolted down, by default the root.
-        tool_length: from the grasp frame along its z axis [m].
+        tool_length: from the grasp frame [m].
         tool_mass: of the tool [kg].
+        tool_direction: axis of the grasp frame along which it extends, ``"z"`` or ``"-x"``; z of ``<name>_grasp``. None
+            takes the likely one.
+        tool_turn: how it is turned about that [rad].
         locked: positions of joints that are held [rad, m].
         limits: of joints whose URDF has none or wrong ones.
-        posture: comfortable positions of its joints by their own names, by default the middle of their ranges.
+        posture: comfortable positions, as ``written_robot`` has them.
+        joint_weights: factors in the objective, as there.
+        sliding: that factor of joints that slide, as there.
+        ahead: (3,) which way is ahead, level, in the world; by default where the base faces.
 
     Raises:
         InputError: a value is wrong, or the data of the robot are such that it cannot lift; it says which.
@@ -51,44 +60,21 @@ def robot_agent(
     checked_number(f"{name}.tool.length", tool_length, 0.0, 1.0, "m")
     checked_number(f"{name}.tool.mass", tool_mass, 0.0, 20.0, "kg")
     found = examined(description, grasp_frame=grasp_frame, base=base, locked=locked, limits=limits)
-    for finding in found.findings:
-        if finding.severity == "refused" or finding.code == AMBIGUOUS:
-            raise finding.refusal(description.source)
-    chain = found.chain
-    text = robot_urdf(chain, name, T_world_base, tool_length=tool_length, tool_mass=tool_mass)
-    return Agent(
+    refuse(found, description.source)
+    text = robot_urdf(
+        found.chain,
+        name,
+        T_world_base,
+        tool_length=tool_length,
+        tool_mass=tool_mass,
+        tool_direction=tool_direction or likely_direction(found.chain.T_last_grasp),
+        tool_turn=tool_turn,
+    )
+    return written_robot(
+        text,
         name=name,
-        kind="robot",
-        urdf=text,
-        model=load_model(text),
-        locked_joints=(),
-        grasps=(Grasp(name, f"{name}_grasp"),),
-        hands=(f"{name}_grasp",),
-        limits=_limits(chain),
-        posture=_posture(chain, dict(posture or {})),
-    )
-
-
-def _limits(chain: RobotChain) -> JointLimits:
-    effort = np.array([joint.effort for joint in chain.joints], dtype=np.float64)
-    return JointLimits(
-        q_lower=np.array([ends.lower for ends in chain.ranges]),
-        q_upper=np.array([ends.upper for ends in chain.ranges]),
-        velocity=np.array([joint.velocity for joint in chain.joints], dtype=np.float64),
-        tau_lower=-effort,
-        tau_upper=effort,
-    )
-
-
-def _posture(chain: RobotChain, given: dict[str, float]) -> Array:
-    source, names = chain.description.source, [joint.name for joint in chain.joints]
-    for name in given:
-        if name not in names:
-            raise InputError(f"{source}: posture", name, f"must be a joint that moves: {', '.join(names)}")
-    middles = [(ends.lower + ends.upper) / 2.0 for ends in chain.ranges]
-    return np.array(
-        [
-            checked_number(f"{source}: posture.{name}", given.get(name, middle), ends.lower, ends.upper, "rad or m")
-            for name, middle, ends in zip(names, middles, chain.ranges, strict=True)
-        ]
+        posture=posture,
+        joint_weights=joint_weights,
+        sliding=sliding,
+        ahead=heading(T_world_base) if ahead is None else ahead,
     )

@@ -16,8 +16,9 @@ from liftopt.errors import InputError
 from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.chain import ChainLink, RobotChain
 from liftopt.multibody.robots.description import LARGEST_NUMBER
+from liftopt.multibody.robots.mass_findings import ROUNDING, principal_moments
 from liftopt.multibody.robots.sawyer_shapes import tool_shapes
-from liftopt.multibody.robots.tool import tool_body
+from liftopt.multibody.robots.tool import UNTURNED, along, tool_body
 from liftopt.multibody.shapes import Capsule, Colour, Shape
 from liftopt.multibody.urdf import FixedLink, JointBounds, MovingLink, tree_robot, urdf_text
 from liftopt.types import Array
@@ -29,15 +30,26 @@ UP = np.array([0.0, 0.0, 1.0])
 LONGEST_NAME = 90
 
 
-def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length: float, tool_mass: float) -> str:
+def robot_urdf(
+    chain: RobotChain,
+    name: str,
+    T_world_base: Array,
+    *,
+    tool_length: float,
+    tool_mass: float,
+    tool_direction: str = UNTURNED,
+    tool_turn: float = 0.0,
+) -> str:
     """Return the URDF of a robot whose base is bolted to the world.
 
     Args:
         chain: what moves.
         name: of the agent, which begins all names; ``<name>_grasp`` is the frame that it holds with.
         T_world_base: (4, 4) placement of the base link.
-        tool_length: from the grasp frame along its z axis to where it holds [m].
+        tool_length: from the grasp frame to where it holds [m].
         tool_mass: of the tool [kg].
+        tool_direction: axis of the grasp frame along which the tool extends; it becomes z of ``<name>_grasp``.
+        tool_turn: how the tool is turned about that [rad].
 
     Raises:
         InputError: two of its names cannot be told apart in a URDF.
@@ -63,7 +75,7 @@ def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length
         moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, shapes))  # type: ignore[arg-type]
         parent, before = own, back
     stand = tuple(_tube("stand", chain.links[0].placement[:3, 3], radius))
-    flange = before @ chain.T_last_grasp
+    flange = before @ chain.T_last_grasp @ along(tool_direction, tool_turn)
     fixed = [FixedLink(base, "world", T_world_base, _sound(chain.base_body), stand)]
     if tool_length or tool_mass:
         fixed.append(
@@ -76,9 +88,11 @@ def robot_urdf(chain: RobotChain, name: str, T_world_base: Array, *, tool_length
 
 
 def _sound(body: BodyInertia) -> BodyInertia:
-    """Return a body that does not move, or none in its place where its mass properties are no numbers."""
+    """Return a body that does not move, or none in its place where its mass properties are none of a body."""
     numbers = np.array([body.mass, *body.com, *body.inertia.ravel()])
-    return body if (np.abs(numbers) <= LARGEST_NUMBER).all() else BodyInertia.zero()
+    if not (np.abs(numbers) <= LARGEST_NUMBER).all() or body.mass < 0.0 or principal_moments(body)[0] < -ROUNDING:
+        return BodyInertia.zero()
+    return body
 
 
 def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotChain) -> list[str]:
@@ -86,7 +100,7 @@ def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotCha
     names: list[str] = []
     used = set(taken)
     for one in own:
-        name = f"{agent}_{_plain(one)}"[:LONGEST_NAME]
+        name = own_joint(agent, one)
         name = f"{name}_link" if name in used else name
         if name in used or f"{name}_fixed" in used:
             raise InputError(
@@ -95,6 +109,11 @@ def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotCha
         used.add(name)
         names.append(name)
     return names
+
+
+def own_joint(agent: str, name: str) -> str:
+    """Return what liftopt's URDF of an agent calls the joint or link that the robot's own URDF calls ``name``."""
+    return f"{agent}_{_plain(name)}"[:LONGEST_NAME]
 
 
 def _plain(name: str) -> str:

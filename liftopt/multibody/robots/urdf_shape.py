@@ -12,6 +12,7 @@ from liftopt.multibody.robots.description import KINDS, LARGEST_NUMBER
 JUDGED_LATER = ("mass", "inertia", "limit", "safety_controller")  # a number that is none is a finding there
 LARGEST = 20_000_000  # characters; the largest public ones have some 500 000
 MOST_LINKS = 2000
+INERTIAL = ("origin", "mass", "inertia")
 # Elements of a link or a joint, and their attributes that are numbers, with how many of them.
 NUMBERS = {
     "origin": {"xyz": 3, "rpy": 3},
@@ -46,8 +47,20 @@ def checked_shape(text: str, source: str) -> Element:
         raise InputError(source, f"<{robot.tag}>", "must be a URDF, whose outermost element is <robot>")
     for element in (*robot.findall("link"), *robot.findall("joint")):
         _check_numbers(element, source)
+    for link in robot.findall("link"):
+        _check_inertial(link, source)
     _check_tree(robot, source)
     return robot
+
+
+def _check_inertial(link: Element, source: str) -> None:
+    """Raise where a macro stands for the moments of inertia: xacro leaves one alone that is called without xacro:."""
+    inertial = link.find("inertial")
+    if inertial is not None and inertial.find("inertia") is None:
+        other = next((inner.tag for inner in inertial if inner.tag not in INERTIAL), None)
+        if other is not None:
+            told = f"is no part of a URDF; if it is a macro, xacro expands it as <xacro:{other} ...>"
+            raise InputError(f"{source}: link {link.get('name')}: inertial", f"<{other}>", told)
 
 
 def _check_numbers(element: Element, source: str) -> None:

@@ -13,6 +13,7 @@ import pytest
 from liftopt.errors import InputError
 from liftopt.lab.comparison.experiment import experiment
 from liftopt.lab.robot.bags import Kind, Record, write_bag
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
 from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, TRAJECTORY, RosMessages
 from liftopt.scenario.build import agent_of
@@ -72,7 +73,7 @@ def bag(path: Path, rows: tuple[Array, Array, Array], kind: Kind = "ros1", goal:
 
 @pytest.mark.parametrize("kind", ["ros1", "ros2", "mcap"])
 def test_a_bag_is_read_back_in_the_signs_of_table_3(solution: Solution, tmp_path: Path, kind: Kind) -> None:
-    record = read_robot_record(bag(tmp_path / "trial", states(solution), kind))
+    record = read_robot_record(bag(tmp_path / "trial", states(solution), kind), JointMap.of(solution))
     dense = resample(solution, 10)
     robot = dense.agents[1]
     assert record.tau is not None
@@ -86,7 +87,7 @@ def test_a_bag_is_read_back_in_the_signs_of_table_3(solution: Solution, tmp_path
 @pytest.mark.parametrize("clock", [None, 37.5], ids=["no clock", "a clock of the robot's own"])
 def test_stamps_are_brought_to_the_recorders_clock(solution: Solution, tmp_path: Path, clock: float | None) -> None:
     """Stamps of a publisher without a clock, or with one that is ahead of the recorder's, tell the same lift."""
-    record = read_robot_record(bag(tmp_path / "trial", states(solution), clock=clock))
+    record = read_robot_record(bag(tmp_path / "trial", states(solution), clock=clock), JointMap.of(solution))
     assert record.sent == pytest.approx((0.5,), abs=1e-9)  # states() begins half a second before the goal
     np.testing.assert_allclose(np.diff(record.time), 1 / RATE, atol=1e-9)
 
@@ -94,7 +95,8 @@ def test_stamps_are_brought_to_the_recorders_clock(solution: Solution, tmp_path:
 def test_three_trials_averaged(solution: Solution, tmp_path: Path) -> None:
     """Trials that differ by -1, 0 and 1 Nm and are 0.1 s late, 5 % of the lift."""
     time, q, tau = states(solution, late=0.1)
-    trials = [read_robot_record(bag(tmp_path / f"trial_{i}", (time, q, tau + i))) for i in (-1, 0, 1)]
+    joints = JointMap.of(solution)
+    trials = [read_robot_record(bag(tmp_path / f"trial_{i}", (time, q, tau + i)), joints) for i in (-1, 0, 1)]
     found = experiment(solution, robot=trials)
     assert [item.name for item in found.group("robot_torque")] == [f"Q{i}" for i in range(1, 8)]
     for item in found.group("robot_torque"):
@@ -138,7 +140,7 @@ def test_a_robot_that_ran_another_lift_is_said(solution: Solution) -> None:
 
 
 def test_a_bag_without_efforts_has_angles(solution: Solution, tmp_path: Path) -> None:
-    record = read_robot_record(bag(tmp_path / "trial", states(solution), effort=False))
+    record = read_robot_record(bag(tmp_path / "trial", states(solution), effort=False), JointMap.of(solution))
     found = experiment(solution, robot=[record])
     assert {item.group for item in found.comparisons} == {"robot_angle"}
     assert any("left out of the torques" in note for note in found.notes)
@@ -156,7 +158,7 @@ def test_a_bag_without_efforts_has_angles(solution: Solution, tmp_path: Path) ->
 )
 def test_messages_of_another_robot(solution: Solution, tmp_path: Path, change: dict[str, Any], match: str) -> None:
     with pytest.raises(InputError, match=match):
-        read_robot_record(bag(tmp_path / "trial", states(solution), **change))
+        read_robot_record(bag(tmp_path / "trial", states(solution), **change), JointMap.of(solution))
 
 
 def test_damaged_and_missing_bags(solution: Solution, tmp_path: Path) -> None:
@@ -164,18 +166,18 @@ def test_damaged_and_missing_bags(solution: Solution, tmp_path: Path) -> None:
     broken = tau.copy()
     broken[7, 3] = np.nan
     with pytest.raises(InputError, match=r"topic /robot/joint_states, message 8 = 'effort of right_j3 nan'"):
-        read_robot_record(bag(tmp_path / "nan", (time, q, broken)))
+        read_robot_record(bag(tmp_path / "nan", (time, q, broken)), JointMap.of(solution))
     with pytest.raises(InputError, match="no such bag"):
-        read_robot_record(tmp_path / "none.bag")
+        read_robot_record(tmp_path / "none.bag", JointMap.of(solution))
     whole = bag(tmp_path / "whole", (time, q, tau))
     for name, content in (("cut.bag", whole.read_bytes()[:20_000]), ("text.bag", b"time,q\n1,2\n"), ("empty.bag", b"")):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(InputError, match=f"{name}: cannot be read as a bag"):
-            read_robot_record(tmp_path / name)
+            read_robot_record(tmp_path / name, JointMap.of(solution))
 
 
 def test_a_bag_that_ends_too_soon(solution: Solution, tmp_path: Path) -> None:
-    record = read_robot_record(bag(tmp_path / "short", states(solution, after=-0.5)))
+    record = read_robot_record(bag(tmp_path / "short", states(solution, after=-0.5)), JointMap.of(solution))
     with pytest.raises(InputError, match=r"= '1\.50 s': must last the lift's 2 s"):
         experiment(solution, robot=[record])
 

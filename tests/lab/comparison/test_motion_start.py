@@ -13,10 +13,10 @@ from liftopt.errors import InputError
 from liftopt.lab.comparison.experiment import experiment
 from liftopt.lab.comparison.motion_start import lift_start, motion_start
 from liftopt.lab.robot.bags import Record, write_bag
-from liftopt.lab.robot.joint_trajectory import JOINTS
+from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.robot_record import RobotRecord, read_robot_record
 from liftopt.lab.robot.ros_messages import FEEDBACK, JOINT_STATE, LOG, SECOND, RosMessages
-from liftopt.lab.robot.trajectory_files import GOAL_TOPIC, TRAJECTORY_TOPIC
+from liftopt.lab.robot.trajectory_files import TRAJECTORY_TOPIC
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
@@ -24,7 +24,10 @@ from liftopt.types import Array
 
 Plan = tuple[Array, Array]
 RATE, BEGUN = 100.0, 1_000.0  # Hz; s on the recorder's clock when the recording begins
-ACTION = GOAL_TOPIC.removesuffix("/goal")
+ACTION = "/robot/limb/right/follow_joint_trajectory"
+GOAL_TOPIC = f"{ACTION}/goal"
+TOPICS = f"/robot/joint_states {GOAL_TOPIC}"
+JOINTS = tuple(f"right_j{i}" for i in range(7))
 FEEDBACK_DEFINITIONS = {
     "control_msgs/msg/FollowJointTrajectoryFeedback": (
         "Header header\nstring[] joint_names\ntrajectory_msgs/JointTrajectoryPoint desired\n"
@@ -44,6 +47,11 @@ def plan(solution: Solution) -> Plan:
     dense = resample(solution, 10)
     robot = dense.agents[1]
     return dense.time, robot.q[:, robot.moving]
+
+
+@pytest.fixture(scope="module")
+def joints(solution: Solution) -> JointMap:
+    return JointMap.of(solution)
 
 
 def trial(plan: Plan, begins: float, lasts: float = 10.0) -> RobotRecord:
@@ -105,22 +113,19 @@ def test_what_is_no_lift_is_refused(plan: Plan) -> None:
 def test_the_goal_counts_before_the_motion(plan: Plan) -> None:
     record = trial(plan, 3.1)
     told = RobotRecord("made up", record.time, record.q, None, sent=(3.0,), told_by="so", missed=3.05)
-    assert lift_start(told, *plan) == (3.0, "so", "")
-    start, _, known = lift_start(record, *plan)
+    assert lift_start(told, *plan, TOPICS) == (3.0, "so", "")
+    start, _, known = lift_start(record, *plan, TOPICS)
     assert start == pytest.approx(3.1, abs=2e-3)
-    assert (
-        "a delay of the whole motion does not show" in known
-        and f"rosbag record /robot/joint_states {GOAL_TOPIC}" in known
-    )
+    assert "a delay of the whole motion does not show" in known and f"rosbag record {TOPICS}" in known
 
 
 def test_of_several_goals_the_lifts_own_counts(plan: Plan) -> None:
     """One before to go to the start, one after to go back; the lift's was sent 0.2 s before the arm follows."""
     record = trial(plan, 4.2, lasts=12.0)
     told = RobotRecord("made up", record.time, record.q, None, sent=(1.0, 4.0, 7.5), told_by="so")
-    assert lift_start(told, *plan)[0] == 4.0
+    assert lift_start(told, *plan, TOPICS)[0] == 4.0
     still = RobotRecord("made up", record.time, 0.0 * record.q, None, sent=(4.0, 4.001))
-    assert lift_start(still, *plan)[0] == 4.001  # a trajectory and its goal, of which the arm did nothing
+    assert lift_start(still, *plan, TOPICS)[0] == 4.001  # a trajectory and its goal, of which the arm did nothing
 
 
 def test_the_page_on_robots_names_the_topics_to_record() -> None:
@@ -174,12 +179,12 @@ def bag(path: Path, plan: Plan, sent: float, late: float, **heard: Any) -> Path:
 
 @pytest.mark.parametrize(("late", "phase"), [(0.02, 1.0), (0.0, 0.0), (0.1, 5.0), (0.3, 15.0)])
 def test_a_recorder_that_just_missed_the_goal_says_when_it_was_sent(
-    solution: Solution, plan: Plan, tmp_path: Path, late: float, phase: float
+    solution: Solution, plan: Plan, joints: JointMap, tmp_path: Path, late: float, phase: float
 ) -> None:
     """The recorder subscribes as the goal is sent; the lift lasts 2 s, so 20 ms are 1 % of it, and 1.4 deg of Q4."""
     pytest.importorskip("rosbags", reason="rosbags is in the extra 'lab'")
     subscribed = {"/clock": 0.1, TRAJECTORY_TOPIC: 3.1, GOAL_TOPIC: 3.102}
-    record = read_robot_record(bag(tmp_path / "trial", plan, 3.1, late, subscribed=subscribed))
+    record = read_robot_record(bag(tmp_path / "trial", plan, 3.1, late, subscribed=subscribed), joints)
     assert record.sent == ()
     found = experiment(solution, robot=[record])
     assert any("at least as late as its phase says" in note for note in found.notes)
@@ -192,18 +197,20 @@ def test_a_recorder_that_just_missed_the_goal_says_when_it_was_sent(
 
 
 @pytest.mark.parametrize("subscribed", [1.0, 3.4], ids=["long before the motion", "after it began"])
-def test_a_subscription_that_explains_nothing_is_left_aside(plan: Plan, tmp_path: Path, subscribed: float) -> None:
+def test_a_subscription_that_explains_nothing_is_left_aside(
+    plan: Plan, joints: JointMap, tmp_path: Path, subscribed: float
+) -> None:
     """Had the recorder listened for two seconds, the goal were in the bag; after the motion began, it came too late."""
     pytest.importorskip("rosbags", reason="rosbags is in the extra 'lab'")
-    record = read_robot_record(bag(tmp_path / "trial", plan, 3.1, 0.02, subscribed={GOAL_TOPIC: subscribed}))
-    start, how, _ = lift_start(record, *plan)
+    record = read_robot_record(bag(tmp_path / "trial", plan, 3.1, 0.02, subscribed={GOAL_TOPIC: subscribed}), joints)
+    start, how, _ = lift_start(record, *plan, TOPICS)
     assert start == pytest.approx(3.12, abs=2e-3) and "moves as the prediction" in how
 
 
-def test_feedback_of_the_action_server_says_when_it_began(plan: Plan, tmp_path: Path) -> None:
+def test_feedback_of_the_action_server_says_when_it_began(plan: Plan, joints: JointMap, tmp_path: Path) -> None:
     pytest.importorskip("rosbags", reason="rosbags is in the extra 'lab'")
     ticks = np.arange(200) / RATE
-    record = read_robot_record(bag(tmp_path / "arm", plan, 3.1, 0.25, followed=ticks))
+    record = read_robot_record(bag(tmp_path / "arm", plan, 3.1, 0.25, followed=ticks), joints)
     assert record.sent == pytest.approx((3.1,), abs=1e-3) and "feedback" in record.told_by
-    gripper = read_robot_record(bag(tmp_path / "other", plan, 3.1, 0.25, followed=ticks, joints=("gripper",)))
+    gripper = read_robot_record(bag(tmp_path / "other", plan, 3.1, 0.25, followed=ticks, joints=("gripper",)), joints)
     assert gripper.sent == ()

@@ -13,17 +13,19 @@ import pytest
 
 from liftopt.commands.cli import main
 from liftopt.commands.exit_status import BAD_INPUT, DONE
-from liftopt.lab.robot.action_server import PERIOD, ActionServer, MinimumJerk
+from liftopt.lab.robot.action_server import ActionServer, MinimumJerk
+from liftopt.lab.robot.command import PERIOD
 from liftopt.lab.robot.dry_run import BEFORE, POSITION_NOISE, DryRun, dry_run
 from liftopt.lab.robot.dry_run_plan import Plan
 from liftopt.lab.robot.dry_run_summary import summarised
-from liftopt.lab.robot.joint_trajectory import JOINTS, joint_trajectory
+from liftopt.lab.robot.joint_trajectory import joint_trajectory
 from liftopt.lab.robot.simulated_arm import STEP, SimulatedArm
 from liftopt.multibody.robots.sawyer import JOINT_SIGNS
 from liftopt.scenario.build import agents_of
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 GOAL_TIME = 2.0
+JOINTS = tuple(f"right_j{i}" for i in range(7))
 
 
 @pytest.fixture(scope="module")

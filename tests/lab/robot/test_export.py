@@ -18,14 +18,16 @@ from liftopt.commands.cli import main
 from liftopt.commands.exit_status import BAD_INPUT, DONE
 from liftopt.errors import InputError
 from liftopt.lab.robot import trajectory_files
-from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
-from liftopt.lab.robot.robot_limits import check_limits, check_motion, read_pose
+from liftopt.lab.robot.joint_trajectory import JointTrajectory, joint_trajectory
+from liftopt.lab.robot.robot_limits import check_limits, check_motion
+from liftopt.lab.robot.robot_start import read_pose
 from liftopt.multibody.dh import rotation_z, translation
 from liftopt.multibody.robots.sawyer import sawyer_limits
 from liftopt.multibody.robots.sawyer_description import FLANGE_IN_LAST_LINK, described_frames
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 GOAL_TIME = 1.25
+JOINTS = tuple(f"right_j{i}" for i in range(7))
 
 
 @pytest.fixture(scope="module")
@@ -192,13 +194,13 @@ def test_an_end_that_moves_is_refused(trajectory):
         check_motion(replace(trajectory, velocity=velocity))
 
 
-def test_a_pose_is_read_as_tools_print_it():
+def test_a_pose_is_read_as_tools_print_it(trajectory):
     expected = [-0.1, 2e-5, 0.3, 0.4, 0.5, 0.6, -7.0]
     for text in ("[-0.1, 2e-5, 0.3, 0.4, 0.5, 0.6, -7.0]", "-0.1 2e-5 .3 .4 .5 .6 -7", "-0.1,2e-5,.3,.4,.5,.6,-7"):
-        np.testing.assert_array_equal(read_pose(text), expected)
+        np.testing.assert_array_equal(read_pose(text, trajectory.joints), expected)
     for text in ("", "1 2 3", "a b c d e f g", "1 2 3 4 5 6 nan"):
         with pytest.raises(InputError, match="seven angles"):
-            read_pose(text)
+            read_pose(text, trajectory.joints)
 
 
 def test_violations_exit_2_with_one_line_and_leave_nothing(result, tmp_path, capsys):

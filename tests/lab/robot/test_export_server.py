@@ -16,14 +16,16 @@ from liftopt.commands.cli import main
 from liftopt.commands.exit_status import BAD_INPUT, DONE
 from liftopt.errors import InputError
 from liftopt.lab.robot.action_server import server_curve
-from liftopt.lab.robot.joint_trajectory import JOINTS, JointTrajectory, joint_trajectory
-from liftopt.lab.robot.robot_limits import check_server, check_start
+from liftopt.lab.robot.joint_trajectory import JointTrajectory, joint_trajectory
+from liftopt.lab.robot.robot_limits import check_curve
+from liftopt.lab.robot.robot_start import check_start
 from liftopt.multibody.robots.sawyer import sawyer_limits
 from liftopt.solution.solution import Solution
 from liftopt.storage.writer import save
 from liftopt.types import Array
 
 CHEAP = ("solver.intervals=10", "solver.starts=1")
+JOINTS = tuple(f"right_j{i}" for i in range(7))
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +99,7 @@ def test_a_rate_at_which_the_server_is_too_fast_is_refused(
 
 def test_the_default_rate_stays_within_the_limits_and_on_the_plan(result: Any, gentle: Any) -> None:
     for kept in (result, gentle):
-        assert check_server(kept.solution, joint_trajectory(kept.solution), 100.0) < 2e-4
+        assert check_curve(kept.solution, joint_trajectory(kept.solution), 100.0) < 2e-4
 
 
 def test_leaving_the_plan_is_said(result: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

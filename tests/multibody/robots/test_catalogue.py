@@ -14,6 +14,7 @@ from liftopt.multibody.robots.catalogue import examined_robot, known_or_path, kn
 from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer_description import JOINTS
+from liftopt.multibody.robots.weight_findings import weight_findings
 from liftopt.storage.urdf_check import check_urdf
 
 KNOWN = known_robots()
@@ -52,11 +53,19 @@ def test_sawyer_is_known_without_any_file():
 @pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed (it is in 'test')")
 def test_placeholders_in_public_files_are_told():
     """The right arm of Alex has 1000 Nm where the left one has 80 and 150; iCub's joints turn at 100 rad/s."""
-    codes = {name: {finding.code for finding in examined_robot(KNOWN[name]).findings} for name in KNOWN}
+    found = {name: examined_robot(KNOWN[name]) for name in KNOWN}
+    codes = {name: {finding.code for finding in examination.findings} for name, examination in found.items()}
     assert "effort.large" in codes["alex_right"] and "effort.large" not in codes["alex_left"]
     assert "velocity.large" in codes["icub_right"]
     assert "weight.springs" in codes["baxter_left"]
     assert {name for name in codes if "effort.same" in codes[name]} == {"so100", "so101"}
+    # The inertias of UR5's wrist, and the first link of Panda, of which only one moment matters.
+    large = {name for name in codes if "inertia.large" in codes[name]}
+    assert large == {"ur5", "ur5_limited", "ur5_gripper", "panda"}
+    # Whose motors cannot bear their weight have springs, of which the catalogue tells instead.
+    weak = {name for name, examination in found.items() if any(weight_findings(examination.chain))}
+    assert weak == {name for name, known in KNOWN.items() if known.springs}
+    assert not any("weight.effort" in seen for seen in codes.values())
 
 
 def test_a_word_is_a_name_or_a_file(tmp_path: Path):

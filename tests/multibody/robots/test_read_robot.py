@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from itertools import count
 from pathlib import Path
 from random import Random
 
@@ -14,6 +15,7 @@ import pytest
 pytest.importorskip("yourdfpy")
 
 from liftopt.errors import InputError
+from liftopt.multibody.robots import written_robot
 from liftopt.multibody.robots.package_files import file_of
 from liftopt.multibody.robots.read_robot import read_robot
 from liftopt.multibody.robots.robot_agent import robot_agent
@@ -136,7 +138,15 @@ def _spoilt(text: str, random: Random) -> str:
 
 
 @pytest.mark.filterwarnings("error::RuntimeWarning")
-def test_a_spoilt_file_is_refused_in_one_line_or_gives_a_model_of_numbers(arm):
+def test_a_spoilt_file_is_refused_in_one_line_or_gives_a_model_of_numbers(arm, monkeypatch):
+    # A posture for each of them would take most of the time; one in ten gets one.
+    found, made = written_robot.resting_posture, count()
+
+    def posture(model, frame, limits, *more):
+        middle = (limits.q_lower + limits.q_upper) / 2.0
+        return middle if next(made) % 10 else found(model, frame, limits, *more)
+
+    monkeypatch.setattr(written_robot, "resting_posture", posture)
     random, outcomes = Random(5), {"refused": 0, "taken": 0}
     for _ in range(300):
         text = arm()
@@ -152,3 +162,20 @@ def test_a_spoilt_file_is_refused_in_one_line_or_gives_a_model_of_numbers(arm):
         assert np.isfinite(pin.crba(agent.model, agent.model.createData(), agent.posture)).all()
         outcomes["taken"] += 1
     assert min(outcomes.values()) > 30, outcomes
+
+
+def test_a_package_goes_by_the_name_in_its_package_xml(tmp_path: Path):
+    """A repository's folder is often called otherwise than the package in it."""
+    folder = tmp_path / "Arms_ROS2_Description"
+    (folder / "urdf").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name> arm_description </name></package>")
+    (folder / "l1.stl").write_text("")
+    assert file_of("package://arm_description/l1.stl", folder / "urdf" / "arm.urdf") == folder / "l1.stl"
+    (folder / "package.xml").write_bytes(b"\xff<package>")
+    assert file_of("package://arm_description/l1.stl", folder / "urdf" / "arm.urdf") is None
+
+
+def test_a_macro_that_xacro_leaves_alone_is_named(arm):
+    inertia = '<inertia ixx="0.022" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/>'
+    with pytest.raises(InputError, match=r"link l2: inertial = '<box_inertia>': .* as <xacro:box_inertia \.\.\.>"):
+        read_robot(arm((inertia, '<box_inertia mass="3" x="0.1"/>')))

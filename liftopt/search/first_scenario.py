@@ -1,0 +1,125 @@
+"""A scenario to start from for a robot: a person opposite it, a box that both can hold, and a stand that reaches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.errors import NO_VALUE, InputError
+from liftopt.multibody.robots.grasp_frames import FINGER
+from liftopt.multibody.robots.sawyer_description import PAYLOAD
+from liftopt.scenario.build import agent_of, motions_of
+from liftopt.scenario.model import scenario_from_dict
+from liftopt.scenario.robot import Robot
+from liftopt.scenario.robot_agents import chosen_of, examination_of
+from liftopt.scenario.robot_defaults import SAWYER
+from liftopt.search.cache import SolverCache
+from liftopt.search.feasibility_screen import screen_ends
+from liftopt.types import Progress
+
+NAME = "robot"
+AHEAD, DEPTH = 0.40, 0.45  # where the person holds, and how long the box is [m]: as in Table 5 of the paper
+LOWEST, HIGHEST = 0.65, 1.35  # between them is the middle of the lift, for an adult who stands [m]
+STAND = 1.0  # [m]: where the middle of the lift is best, if a stand can be had
+# Shares of the robot's reach that it lifts, the largest first but no more than HIGH [m]; and masses of the box [kg].
+SHARES, HIGH = (0.4, 0.25, 0.12), 0.4
+MASSES = (2.0, 1.0, 0.5, 0.2, 0.1)
+PAYLOAD_SHARE = 0.9  # of the payload, for the gripper and half of the box
+GRIPPER = {"length": 0.15, "mass": 0.4}
+PATIENCE = 60.0  # [s] for all trials together
+MOBILE = "footprint"  # in the name of the base link of a robot that stands on the floor
+SETTLED = 2  # digits of the lengths in the file
+
+
+@dataclass(frozen=True)
+class _Robot:
+    """A robot's entries, with what is known of it.
+
+    Attributes:
+        entries: of its section.
+        payload: what it may carry [kg], infinite where that is not known.
+        on_floor: whether it comes with a stand or wheels of its own.
+    """
+
+    entries: Mapping[str, Any]
+    payload: float
+    on_floor: bool
+
+    def bears(self, mass: float) -> bool:
+        """Whether its payload bears its gripper and half of a box of a mass [kg]."""
+        tool = Robot(**self.entries).tool.mass
+        return tool + mass / 2.0 <= PAYLOAD_SHARE * self.payload
+
+
+def first_scenario(robot: Mapping[str, Any], name: str, progress: Progress | None = None) -> dict[str, Any]:
+    """Return the tables of a scenario whose robot can hold the box still at both ends.
+
+    Args:
+        robot: entries of its section, ``model`` at least.
+        name: of the scenario.
+        progress: called when kernels must be compiled first.
+
+    Raises:
+        InputError: the robot cannot be read or used, or no such scenario was found; it says what was in the way.
+    """
+    deadline, cache, known = Deadline.after(PATIENCE), SolverCache(), _known(robot)
+    why = f"its payload of {known.payload:g} kg bears none of the boxes that were tried"
+    for mass, share in product(MASSES, SHARES):
+        if deadline.passed or not known.bears(mass):
+            continue
+        tables = _tables(known, name, mass, share)
+        scenario = scenario_from_dict(tables)
+        reasons, _ = screen_ends(cache.problem(scenario, motions_of(scenario), progress), 0, deadline)
+        if not reasons:
+            return tables
+        why = reasons[0].message
+    raise InputError(str(robot["model"]), NO_VALUE, f"no stand was found at which it holds a box; at last {why}")
+
+
+def _known(robot: Mapping[str, Any]) -> _Robot:
+    section = Robot(**robot)
+    if section.model == SAWYER:
+        return _Robot({**robot, "tool": dict(GRIPPER)}, section.payload or PAYLOAD, False)
+    chosen = chosen_of(section, NAME)
+    published = None if chosen.known is None else chosen.known.payload
+    payload = section.payload or published or float("inf")
+    chain = examination_of(section, NAME).chain
+    has_hand = any(FINGER.search(link) for link in chain.links[-1].links)
+    given = "tool" in robot or has_hand or payload < 4.0 * GRIPPER["mass"]
+    return _Robot(robot if given else {**robot, "tool": dict(GRIPPER)}, payload, MOBILE in chain.base)
+
+
+def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, Any]:
+    """Return a scenario in which the robot's tool, in its resting posture, is at the middle of the lift."""
+    human = {"kind": "person", "stature": 1.75, "mass": 75.0, "sex": "male"}
+    tables: dict[str, Any] = {
+        "schema": 2,
+        "name": name,
+        "duration": 2.0,
+        "agents": {"human": human, NAME: {"kind": "robot", **robot.entries, "base": {"x": 0.0, "z": 0.0}}},
+        "object": {"name": "box", "mass": mass, "depth": DEPTH, "width": 0.3, "height": 0.02},
+        "task": {"standing_distance": 2.0} | {end: {"x": 0.0, "z": 1.0} for end in ("start", "end")},
+        "objective": {"preset": "natural"},
+    }
+    own, target = agent_of(scenario_from_dict(tables), NAME), AHEAD + DEPTH
+    model = own.reduced()
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, own.posture)
+    tip = np.asarray(data.oMf[model.getFrameId(own.hands[0])].translation)
+    half = min(HIGH, 2.0 * share * float(np.linalg.norm(tip - data.oMi[1].translation))) / 2.0
+    stand = 0.0 if robot.on_floor else max(0.0, STAND - float(tip[2]))
+    middle = float(np.clip(stand + tip[2], LOWEST, HIGHEST))
+    x, y = round(target - float(tip[0]), SETTLED), round(-float(tip[1]), SETTLED) + 0.0
+    tables["agents"][NAME]["base"] = {"x": x, "y": y, "z": round(stand, SETTLED)}
+    tables["task"] = {
+        "standing_distance": min(max(x, 0.5), 4.0),
+        "start": {"height": round(middle - half, SETTLED), "human_distance": AHEAD},
+        "end": {"height": round(middle + half, SETTLED), "human_distance": AHEAD},
+    }
+    return tables

@@ -1,0 +1,44 @@
+"""Robots from outside can keep clear of themselves. Oracle: coal's distances in random postures."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("yourdfpy")
+
+from liftopt.multibody.robots.catalogue import known_robots
+from liftopt.multibody.robots.example_robot_data import share_folder
+from liftopt.multibody.robots.robot_agent import robot_agent
+from liftopt.multibody.solid_pairs import solid_pairs
+from liftopt.multibody.solids import solids_of
+
+NOT_INSTALLED = "example-robot-data is not installed (it is in 'test')"
+POSTURES = 40
+
+
+@pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
+@pytest.mark.parametrize("name", ["ur5", "panda", "baxter_left", "tiago_lifting", "z1"])
+def test_only_parts_that_overlap_in_every_posture_may(name, table, coal_distance, rng):
+    known = known_robots()[name]
+    agent = robot_agent(
+        known.description(), name="robot", T_world_base=np.eye(4), base=known.base, grasp_frame=known.grasp_frame,
+        locked=known.locked,
+    )  # fmt: skip
+    kept = {pair.told for pair in solid_pairs((agent,), table) if pair.within_body}
+    solids = solids_of(agent)
+    bearing = sorted({solid.joint for solid in solids})
+    farthest = dict.fromkeys(combinations(range(len(solids)), 2), -np.inf)
+    for q in rng.uniform(agent.limits.q_lower, agent.limits.q_upper, (POSTURES, len(agent.posture))):
+        at = coal_distance.joint_placements(agent, q)
+        for i, j in farthest:
+            one, other = solids[i], solids[j]
+            apart = coal_distance.distance(one, at[one.joint], other, at[other.joint])
+            farthest[i, j] = max(farthest[i, j], apart)
+    for (i, j), apart in farthest.items():
+        if f"{solids[i].told} and {solids[j].told}" in kept:
+            assert apart > 0.0
+        elif abs(bearing.index(solids[i].joint) - bearing.index(solids[j].joint)) > 1:
+            assert apart <= 0.0
