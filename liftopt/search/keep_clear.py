@@ -25,7 +25,7 @@ FAILING = 4
 PASSED = 2
 # Pairs whose other side is tried, each alone: where many overlap, one of them decides little.
 AVOIDED = 6
-BETWEEN = 6  # motions between clear postures that are tried
+BETWEEN = 4  # motions between clear postures that are tried
 ELASTIC = 3  # times that the elastic mode clears one of them, each with the pairs that the last one led into each other
 HELD_OFF = 2  # clear optima that are wanted where the object is held off: the first may pass on a worse side
 
@@ -63,6 +63,7 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
     if not found:
         session.blocked = failed
         found = _anyhow(session, clearer, failed[:PASSED])
+        session.detoured = bool(failed) and not found
     if not found:
         return []
     return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
@@ -87,6 +88,8 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
             session.blocked = []
             return [*candidates[:n], attempt.candidate, *candidates[n + 1 :]]
         session.blocked.append(attempt)
+    if session.detoured:  # what led nowhere on the coarse mesh leads nowhere here either
+        return list(candidates)
     return [*_anyhow(session, clearer, session.blocked[:PASSED]), *candidates]
 
 

@@ -37,6 +37,7 @@ class Session:
         notes: what the user should know.
         blocked: optima that could not be made clear, on one mesh, the most promising first.
         held: clear postures at both ends, where no optimum could be made clear; empty where that is not known.
+        detoured: whether all ways to make optima clear were tried on a coarse mesh, to no avail.
         cut: where the time limit ended the search too early, in one line; empty where it did not.
     """
 
@@ -60,6 +61,7 @@ class Session:
         self.notes: list[str] = []
         self.blocked: list[Attempt] = []
         self.held: tuple[ClearEnd, ...] = ()
+        self.detoured = False
         problem = self.problem(self.spline)
         self.solvers(problem)
         self.postures = cache.postures(problem, scenario, self.progress)
