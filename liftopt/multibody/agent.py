@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
+from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.types import Array
 
 Kind = Literal["person", "robot"]
@@ -214,6 +215,7 @@ class Agent:
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
         joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
+        remarks: what was noticed about the data that it was made of.
         shares_kernels: whether it is a serial arm, simple, whose joints turn about or slide along their z axes, and has
             what is generated for all of them with the same kinds of joints.
     """
@@ -233,6 +235,7 @@ class Agent:
     stance: Stance | None = None
     lean: Lean | None = None
     joint_weights: Array | None = None
+    remarks: tuple[DataFinding, ...] = ()
     shares_kernels: bool = False
 
     @property
