@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,6 @@ from liftopt.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from liftopt.multibody.robots.data_finding import DataFinding
     from liftopt.multibody.robots.examination import Examination
     from liftopt.multibody.robots.known_robot import KnownRobot
 
@@ -179,16 +177,10 @@ def _print_list(console: Console) -> None:
     console.print(told, markup=False, highlight=False, soft_wrap=True)
 
 
-def _alike(findings: Iterable[DataFinding]) -> list[list[DataFinding]]:
-    """Return findings in groups that say the same of several links or joints, the groups in order."""
-    groups: dict[tuple[str, str], list[DataFinding]] = {}
-    for finding in findings:
-        groups.setdefault((finding.code, finding.message), []).append(finding)
-    return list(groups.values())
-
-
 def _print(found: Examination, known: KnownRobot | Path, console: Console) -> None:
     from rich.table import Table
+
+    from liftopt.multibody.robots.data_finding import alike
 
     def say(text: str) -> None:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
@@ -215,7 +207,7 @@ def _print(found: Examination, known: KnownRobot | Path, console: Console) -> No
             *("none" if n is None else f"{n:.4g} {unit}" for n, unit in zip(numbers, units, strict=True)),
         )
     console.print(table)
-    for first, *others in _alike(found.findings):
+    for first, *others in alike(found.findings):
         also = f" (and {', '.join(other.where for other in others)})" if others else ""
         say(f"{HEADS[first.severity]}: {first.told}{also}")
     say("It cannot lift with these data." if found.refused else "It can lift with these data.")

@@ -17,7 +17,7 @@ from liftopt.multibody.robots.sawyer_description import PAYLOAD
 from liftopt.scenario.build import agent_of, motions_of
 from liftopt.scenario.model import scenario_from_dict
 from liftopt.scenario.robot import Robot
-from liftopt.scenario.robot_agents import chosen_of, examination_of
+from liftopt.scenario.robot_agents import chosen_of
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.search.cache import SolverCache
 from liftopt.search.feasibility_screen import screen_ends
@@ -89,7 +89,7 @@ def _known(robot: Mapping[str, Any]) -> _Robot:
     chosen = chosen_of(section, NAME)
     published = None if chosen.known is None else chosen.known.payload
     payload = section.payload or published or float("inf")
-    chain = examination_of(section, NAME).chain
+    chain = chosen.examination().chain
     has_hand = any(FINGER.search(link) for link in chain.links[-1].links)
     given = "tool" in robot or has_hand or payload < 4.0 * GRIPPER["mass"]
     return _Robot(robot if given else {**robot, "tool": dict(GRIPPER)}, payload, MOBILE in chain.base)
@@ -102,7 +102,7 @@ def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, An
         "schema": 2,
         "name": name,
         "duration": 2.0,
-        "agents": {"human": human, NAME: {"kind": "robot", **robot.entries, "base": {"x": 0.0, "z": 0.0}}},
+        "agents": {"human": human, NAME: {"kind": "robot", **robot.entries, "base": {"x": 0.0, "z": STAND}}},
         "object": {"name": "box", "mass": mass, "depth": DEPTH, "width": 0.3, "height": 0.02},
         "task": {"standing_distance": 2.0} | {end: {"x": 0.0, "z": 1.0} for end in ("start", "end")},
         "objective": {"preset": "natural"},
@@ -111,8 +111,9 @@ def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, An
     model = own.reduced()
     data = model.createData()
     pin.framesForwardKinematics(model, data, own.posture)
-    tip = np.asarray(data.oMf[model.getFrameId(own.hands[0])].translation)
-    half = min(HIGH, 2.0 * share * float(np.linalg.norm(tip - data.oMi[1].translation))) / 2.0
+    places = (data.oMf[model.getFrameId(own.hands[0])], data.oMi[1])
+    tip, shoulder = (np.asarray(place.translation) - [0.0, 0.0, STAND] for place in places)  # from its base
+    half = min(HIGH, 2.0 * share * float(np.linalg.norm(tip - shoulder))) / 2.0
     stand = 0.0 if robot.on_floor else max(0.0, STAND - float(tip[2]))
     middle = float(np.clip(stand + tip[2], LOWEST, HIGHEST))
     x, y = round(target - float(tip[0]), SETTLED), round(-float(tip[1]), SETTLED) + 0.0

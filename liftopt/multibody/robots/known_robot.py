@@ -28,6 +28,7 @@ class KnownRobot:
         payload_source: of the payload.
         direction: axis of the grasp frame that points away from the robot (``"-x"`` ...); None: the likely one.
         front_deg: where its front is, about z from x of its base [deg].
+        hand: mass of a hand that its URDF has and that counts towards the payload [kg].
         springs: what bears part of its weight beside its motors, in words; its torques are smaller than computed.
         own_urdf: writes the URDF of one that liftopt has itself.
     """
@@ -43,6 +44,7 @@ class KnownRobot:
     payload_source: Source | None = None
     direction: str | None = None
     front_deg: float = 0.0
+    hand: float = 0.0
     springs: str = ""
     own_urdf: Callable[[], str] | None = None
 

@@ -63,7 +63,7 @@ FAULTS = {
     ),
     "finger": ([], "joints.held", "assumed", "joints that are held"),
     "prismatic": ([('name="j1" type="revolute"', 'name="j1" type="prismatic"')], "joint.prismatic",
-        "warned", "joint j1"),
+        "assumed", "joint j1"),
     "lost mesh": (
         [('<link name="base"/>', '<link name="base"><visual><geometry><mesh filename="package://x/b.stl"/></geometry>'
           "</visual></link>")],
