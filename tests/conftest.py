@@ -22,6 +22,7 @@ from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.multibody.joint_units import TURNS
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.placement import facing
+from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.scenario.model import load_scenario
@@ -108,6 +109,28 @@ def alone(solved: Callable[..., Solved], tmp_path_factory: pytest.TempPathFactor
     """A whole person who lifts a box with both hands and nobody else."""
     file = tmp_path_factory.mktemp("scenario") / "alone.toml"
     file.write_text(ALONE, encoding="utf-8")
+    return solved(str(file))
+
+
+@pytest.fixture(scope="session")
+def ur10(solved: Callable[..., Solved], tmp_path_factory: pytest.TempPathFactory) -> Solved:
+    """A person and a UR10, which example-robot-data describes, lift a box."""
+    pytest.importorskip("yourdfpy", reason="yourdfpy is in the extra 'robots'")
+    if share_folder() is None:
+        pytest.skip("example-robot-data is not installed (it is in 'test')")
+    file = tmp_path_factory.mktemp("scenario") / "ur10.toml"
+    file.write_text(_module("robot_lift").UR10, encoding="utf-8")
+    return solved(str(file))
+
+
+@pytest.fixture(scope="session")
+def on_a_column(solved: Callable[..., Solved], tmp_path_factory: pytest.TempPathFactory) -> Solved:
+    """A person and an arm on a lifting column, which a URDF describes, lift a box."""
+    pytest.importorskip("yourdfpy", reason="yourdfpy is in the extra 'robots'")
+    module, folder = _module("robot_lift"), tmp_path_factory.mktemp("scenario")
+    (folder / "column.urdf").write_text(module.column_robot(), encoding="utf-8")
+    file = folder / "column.toml"
+    file.write_text(module.on_a_column("column.urdf"), encoding="utf-8")
     return solved(str(file))
 
 

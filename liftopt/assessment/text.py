@@ -14,6 +14,7 @@ from liftopt.scenario.agents import Person
 from liftopt.scenario.grasps import grasp_heights, grasp_points
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import lead, partner, stand_of
+from liftopt.scenario.robot_defaults import is_file
 from liftopt.solution.finding import CAUTION, CLEARANCE, INFO, MATHEMATICS, PERSON, ROBOT, WARNING, Assessment, Finding
 from liftopt.solution.solution import Solution
 
@@ -100,7 +101,10 @@ def _described(scenario: Scenario) -> Iterator[str]:
     """Give everybody who lifts in a few words, by name where there are several of the kind."""
     kinds = [agent.kind for agent in scenario.agents.values()]
     for name, agent in scenario.agents.items():
-        what = f"{agent.sex} {agent.stature:g} m, {agent.mass:g} kg" if isinstance(agent, Person) else agent.model
+        if isinstance(agent, Person):
+            what = f"{agent.sex} {agent.stature:g} m, {agent.mass:g} kg"
+        else:
+            what = Path(agent.model).name if is_file(agent.model) else agent.model
         yield what if kinds.count(agent.kind) == 1 else f"{name} ({what})"
 
 

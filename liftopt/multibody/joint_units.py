@@ -30,6 +30,9 @@ class JointUnits:
     factor: float
 
 
+# In preset paper, which adds (Nm)^2, one N of a sliding joint counts as this many Nm [m]; in preset natural shares of
+# limits are added, which have no unit. A choice of this model: about the lever at which an arm's last joints bear.
+LEVER = 0.1
 TURNS = JointUnits("rad", "rad/s", "rad/s^2", "Nm", "angle", "torque", "moves", "deg", 180.0 / pi)
 SLIDES = JointUnits("m", "m/s", "m/s^2", "N", "position", "force", "slides", "mm", 1000.0)
 

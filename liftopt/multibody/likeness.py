@@ -35,13 +35,13 @@ def difference(model: pin.Model, expected: pin.Model, frames: Sequence[str]) -> 
     for i, name in enumerate(wanted, start=1):
         if model.joints[i].shortname() != expected.joints[i].shortname() or model.parents[i] != expected.parents[i]:
             return f"its joint {name} is of another kind, or on another body"
-        if found := _moved(model.jointPlacements[i], expected.jointPlacements[i]):
+        if found := moved(model.jointPlacements[i], expected.jointPlacements[i]):
             return f"its joint {name} is {found}"
     for frame in frames:
         own, other = (each.frames[each.getFrameId(frame)] for each in (model, expected))
         if own.parentJoint != other.parentJoint:
             return f"its frame {frame} is on another body"
-        if found := _moved(own.placement, other.placement):
+        if found := moved(own.placement, other.placement):
             return f"its frame {frame} is {found}"
     for i, name in enumerate(["base", *wanted]):
         mass, other_mass = model.inertias[i].mass, expected.inertias[i].mass
@@ -53,7 +53,8 @@ def difference(model: pin.Model, expected: pin.Model, frames: Sequence[str]) -> 
     return ""
 
 
-def _moved(placement: pin.SE3, expected: pin.SE3) -> str:
+def moved(placement: pin.SE3, expected: pin.SE3) -> str:
+    """Return how far a placement is from where it should be, in words; empty if it is there."""
     away = float(np.linalg.norm(placement.translation - expected.translation))
     turned = float(np.linalg.norm(pin.log3(expected.rotation.T @ placement.rotation)))
     if away <= PLACE and turned <= TURN:

@@ -15,9 +15,14 @@ import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, Grasp, JointLimits, Kind, LiftedObject, Stance
 from liftopt.multibody.joint_units import JointUnits, units_of
+from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.types import Array
 
 GRAVITY = 9.81  # m/s^2, as in the models
+# Of an agent's motion.
+CONSTANT = (
+    "name", "kind", "joint_names", "moving", "sliding", "limits", "grasps", "stance", "p_world_base", "remarks",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,7 @@ class AgentTrajectory:
         grasps: how it holds the object.
         stance: how it stands, None where its base holds it whatever it does.
         p_world_base: (3,) its base point [m].
+        remarks: what was noticed about the data of its model as it was read; empty of one that a result has kept.
     """
 
     name: str
@@ -64,6 +70,7 @@ class AgentTrajectory:
     grasps: tuple[Grasp, ...]
     stance: Stance | None
     p_world_base: Array
+    remarks: tuple[DataFinding, ...] = ()
 
     @property
     def centre_of_pressure(self) -> Array | None:
@@ -99,8 +106,7 @@ class AgentTrajectory:
 
     def every(self, step: int) -> AgentTrajectory:
         """Return the trajectory at the first and every ``step``-th time after it."""
-        constant = ("name", "kind", "joint_names", "moving", "sliding", "limits", "grasps", "stance", "p_world_base")
-        over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in constant}
+        over_time = {f.name: getattr(self, f.name)[::step] for f in fields(self) if f.name not in CONSTANT}
         return replace(self, **over_time)
 
 
@@ -177,6 +183,7 @@ def agent_trajectory(
     return AgentTrajectory(
         agent.name, agent.kind, names, moving, agent.sliding, full_q, full_v, full_a, tau, force, moment, point, grip,
         ground_force, ground_moment, agent.limits, agent.grasps, agent.stance, np.array(p_world_base),
+        agent.remarks,
     )  # fmt: skip
 
 
@@ -277,6 +284,20 @@ def angle_between(one: Array, other: Array) -> Array:
     # By the chord rather than the cosine, which is flat at zero: |R - S| = 2 sqrt(2) sin(angle / 2).
     chord = np.linalg.norm(one - other, axis=(1, 2))
     return np.asarray(2.0 * np.arcsin(np.minimum(1.0, chord / np.sqrt(8.0))))
+
+
+def hand_turn(grasp: Grasp, rotation: Array, grip: Array) -> Array:
+    """Return how far a hand is turned (K,) from its reference orientation on the object [rad]; around a bar, from it.
+
+    Args:
+        grasp: how it holds.
+        rotation: (K, 3, 3) the object's axes in the world.
+        grip: (K, 3, 3) the hand's grip axes in the world.
+    """
+    if grasp.bar is None:
+        return angle_between(rotation, grip)
+    one, other = rotation @ grasp.bar, grip @ grasp.bar
+    return np.asarray(2.0 * np.arcsin(np.minimum(1.0, np.linalg.norm(one - other, axis=1) / 2.0)))
 
 
 def quaternion(angles: Array) -> Array:

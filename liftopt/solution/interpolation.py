@@ -34,7 +34,7 @@ def resample(solution: Solution, factor: int) -> Solution:
         force, moment = (
             linear(solution.time, each.reshape(len(each), -1), time) for each in (agent.grasp_force, agent.grasp_moment)
         )
-        moving = agent.moving
+        moving, model = agent.moving, replace(model, remarks=agent.remarks)
         agents.append(agent_trajectory(model, q[:, moving], v[:, moving], a[:, moving], force, moment))
         forces.append(force)
         moments.append(moment)

@@ -27,6 +27,7 @@ from liftopt.storage.older_result import urdfs_beside
 from liftopt.storage.record import read_assessment, read_record
 from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
 from liftopt.storage.result_path import no_result, result_file
+from liftopt.storage.robot_check import unlike_scenario
 from liftopt.storage.solved_scenario import scenario_of
 from liftopt.storage.urdf_check import check_urdf
 from liftopt.types import Array
@@ -63,7 +64,7 @@ def load_result(path: str | Path) -> Solution:
     try:
         built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario, own), object_of(scenario))
         agents, lifted = agents_of(scenario, urdfs), object_of(scenario, urdfs)
-        _check_models(file, built, (*agents, lifted))
+        _check_models(file, scenario, built, (*agents, lifted))
         return _solution(scenario, urdfs, agents, lifted, data, attributes)
     except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
         why = f"{type(error).__name__}: {error}"
@@ -86,11 +87,16 @@ def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dic
     return urdfs
 
 
-def _check_models(file: Path, built: Sequence[Agent | LiftedObject], given: Sequence[Agent | LiftedObject]) -> None:
+def _check_models(
+    file: Path, scenario: Scenario, built: Sequence[Agent | LiftedObject], given: Sequence[Agent | LiftedObject]
+) -> None:
     """Raise InputError if the models of a result are not those of its scenario; small numbers may differ."""
     for expected, one in zip(built, given, strict=True):
         frames = expected.grasp_frames if isinstance(expected, LiftedObject) else expected.hands
-        if found := difference(one.model, expected.model, frames):
+        found = difference(one.model, expected.model, frames)
+        if isinstance(one, Agent) and is_from_file(scenario, one.name):
+            found = unlike_scenario(scenario, one)
+        if found:
             why = f"the model of {one.name} is not that of the result's scenario: {found}; solve again"
             raise InputError(str(file), NO_VALUE, why)
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from liftopt.assessment import robot
 from liftopt.assessment.assess import assess
 from liftopt.assessment.text import details_text, verdict_text
 from liftopt.solution.interpolation import between_knots
@@ -99,16 +98,6 @@ def test_hands_of_three_work_against_each_other(robots: Solution) -> None:
     assert after.value == pytest.approx(before.value + np.linalg.norm(push[0]), rel=0.02)
     assert after.severity == "warning"
     assert after.message.startswith("The hand of the person and those of near and far press the plank together")
-
-
-def test_a_robot_whose_payload_nobody_knows_is_told_so(robots: Solution, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(robot, "DATA", {})
-    found = [finding for finding in assess(robots) if finding.code == "robot.payload"]
-    assert [finding.agent for finding in found] == ["near", "far"]
-    for finding in found:
-        assert (finding.severity, finding.limit) == ("info", None)
-        assert "payload is not known" in finding.message
-        assert f"{finding.value:.2f} kg" in finding.message
 
 
 def test_clearance_speaks_of_those_who_are_there(people: Solution, robots: Solution) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from liftopt.errors import NO_VALUE
+from liftopt.multibody.joint_units import LEVER
 from liftopt.multibody.robots.chain import OTHERS, RobotChain
 from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.multibody.robots.description import RobotDescription
@@ -39,9 +40,9 @@ def chain_findings(chain: RobotChain) -> Iterator[DataFinding]:
                           "say tool.direction for another axis")  # fmt: skip
     for joint in chain.joints:
         if joint.kind == "prismatic":
-            message = "it slides: a squared force counts where a squared torque does, 1 N like 1 Nm"
-            yield DataFinding("joint.prismatic", "warned", f"joint {joint.name}", NO_VALUE, message,
-                              f"lock it where this misleads: locked.{joint.name}")  # fmt: skip
+            message = f"it slides: 1 N counts as {LEVER:g} Nm in preset paper; in natural shares of limits count"
+            yield DataFinding("joint.prismatic", "assumed", f"joint {joint.name}", NO_VALUE, message,
+                              f"say joint_weights.{joint.name} for another weight, or lock it")  # fmt: skip
     for joint in description.joints:
         if joint.kind in OTHERS and joint.name in chain.held:
             message = f"a {joint.kind} joint beside the chain; it stays at zero"

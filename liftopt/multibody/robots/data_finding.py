@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -54,6 +55,14 @@ class DataFinding:
         """Return the error that says it."""
         value = self.value if self.value is NO_VALUE else _plain(self.value)
         return InputError(f"{source}: {self.where}", value, f"{self.message}; {self.fix}")
+
+
+def alike(findings: Iterable[DataFinding]) -> list[list[DataFinding]]:
+    """Return findings in groups that say the same of several links or joints, the groups in order."""
+    groups: dict[tuple[str, str], list[DataFinding]] = {}
+    for finding in findings:
+        groups.setdefault((finding.code, finding.message), []).append(finding)
+    return list(groups.values())
 
 
 def _plain(value: object) -> Any:

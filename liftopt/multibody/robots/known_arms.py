@@ -14,6 +14,8 @@ from liftopt.multibody.sources import Source
 
 UR, PAL, RETHINK, IIT = "Universal Robots", "PAL Robotics", "Rethink Robotics", "Istituto Italiano di Tecnologia"
 SIDES = (("left", "l"), ("right", "r"))
+# Masses of the hands beyond the flange, as the URDFs have them [kg].
+PANDA_HAND, TIAGO_HAND = 0.76, 0.933
 
 
 def _published(maker: str) -> Source:
@@ -61,7 +63,8 @@ def known_arms() -> Iterator[KnownRobot]:
     """Give all of them, installed or not."""
     yield from _universal()
     yield KnownRobot("panda", "Panda with hand", "Franka Emika", "panda_description/urdf/panda.urdf", "panda_link0",
-                     "panda_hand_tcp", payload=3.0, payload_source=_published("Franka Emika"))  # fmt: skip
+                     "panda_hand_tcp", payload=3.0, payload_source=_published("Franka Emika"),
+                     hand=PANDA_HAND)  # fmt: skip
     yield KnownRobot("kinova", "Jaco 2, six joints, two fingers", "Kinova", "kinova_description/robots/kinova.urdf",
                      "base", "j2s6s200_end_effector")  # fmt: skip
     yield KnownRobot("xarm7", "xArm 7", "UFACTORY", "xarm_description/urdf/xarm7.urdf", "world", "link_eef",
@@ -77,14 +80,15 @@ def known_arms() -> Iterator[KnownRobot]:
     tiago = "tiago_description/robots/tiago.urdf"
     payload: dict[str, Any] = {"payload": 3.0, "payload_source": _published(PAL)}
     column = {"torso_lift_joint": 0.0}
-    yield KnownRobot("tiago", "TIAGo", PAL, tiago, "base_footprint", "hand_tool_link", column, **payload)
-    yield KnownRobot(
-        "tiago_lifting", "TIAGo, its column moves", PAL, tiago, "base_footprint", "hand_tool_link", **payload
-    )
+    yield KnownRobot("tiago", "TIAGo", PAL, tiago, "base_footprint", "hand_tool_link", column, **payload,
+                     hand=TIAGO_HAND)  # fmt: skip
+    yield KnownRobot("tiago_lifting", "TIAGo, its column moves", PAL, tiago, "base_footprint", "hand_tool_link",
+                     **payload, hand=TIAGO_HAND)  # fmt: skip
     yield KnownRobot("tiago_no_hand", "TIAGo without hand", PAL, "tiago_description/robots/tiago_no_hand.urdf",
                      "base_footprint", "wrist_ft_tool_link", column, **payload)  # fmt: skip
     yield from _two_arms("tiago_dual", "TIAGo with two arms", PAL, "tiago_description/robots/tiago_dual.urdf",
-                         "base_footprint", "hand_{side}_tool_link", locked=column, **payload)  # fmt: skip
+                         "base_footprint", "hand_{side}_tool_link", locked=column, **payload,
+                         hand=TIAGO_HAND)  # fmt: skip
     yield from _two_arms("tiago_pro", "TIAGo Pro", PAL, "tiago_pro_description/robots/tiago_pro.urdf",
                          "base_footprint", "gripper_{side}_base_link", locked=column)  # fmt: skip
     yield from _two_arms("talos", "TALOS", PAL, "talos_data/robots/talos_full_v2.urdf", "base_link",
@@ -92,7 +96,7 @@ def known_arms() -> Iterator[KnownRobot]:
                          payload_source=STASSE_2017)  # fmt: skip
     trunk = {"torso_pitch": 0.0, "torso_roll": 0.0, "torso_yaw": 0.0}
     yield from _two_arms("icub", "iCub", IIT, "icub_description/robots/icub.urdf", "base_link", "{s}_gripper",
-                         locked=trunk, front_deg=180.0)  # fmt: skip
+                         locked=trunk, front_deg=180.0, y_up=True)  # fmt: skip
     yield from _two_arms("pr2", "PR2", "Willow Garage", "pr2_description/urdf/pr2.urdf", "base_footprint",
                          "{s}_gripper_tool_frame", locked={"torso_lift_joint": 0.0115}, payload=1.8,
                          payload_source=WILLOW_GARAGE, springs=PR2_SPRINGS)  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.bounds import checked_number
@@ -70,7 +71,7 @@ def robot_agent(
         tool_direction=tool_direction or likely_direction(found.chain.T_last_grasp),
         tool_turn=tool_turn,
     )
-    return written_robot(
+    agent = written_robot(
         text,
         name=name,
         posture=posture,
@@ -78,3 +79,4 @@ def robot_agent(
         sliding=sliding,
         ahead=heading(T_world_base) if ahead is None else ahead,
     )
+    return replace(agent, remarks=found.findings)
