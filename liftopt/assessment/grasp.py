@@ -87,6 +87,13 @@ def share_finding(fine: Solution, person: AgentTrajectory, who: Who) -> Finding:
     if not np.isfinite(share).any():
         text = "There is no load to share."
         return Finding(f"{PERSON}.load_share", INFO, "no load to share", text, person.name, source=source)
+    if len(fine.agents) == 1:
+        title = "carries the load alone"
+        text = f"The {who.told} {title}."
+        return Finding(
+            f"{PERSON}.load_share", INFO, title, text, person.name, value=1.0, unit="share of the vertical force",
+            source="nobody else holds it",
+        )  # fmt: skip
     k, low = int(np.nanargmax(share)), 100 * float(np.nanmin(share))
     up = np.stack([agent.load[:, 2] for agent in fine.agents])
     down, weight = -float(np.where(up.sum(axis=0) > 0.0, up, 0.0).min()), fine.scenario.object.mass * GRAVITY

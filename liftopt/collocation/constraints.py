@@ -233,12 +233,13 @@ def _grasp_force(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp, cap: floa
 def _moment(rows: _Rows, i: int, own: AgentOutputs, grasp: Grasp) -> None:
     """The norm of the moment, squared, as a share of its cap squared, and the hand's angle on the object by its cosine.
 
-    The cosine's slope vanishes with the angle, so an angle of zero cannot be asked for.
+    Around a bar it is half of the cosine, less a half. The cosine's slope vanishes with the angle, so an angle of zero
+    cannot be asked for.
     """
     rows.add(rows.outputs_at(i, rows.knots, own.moment_squared(grasp.frame)), 1.0 / grasp.max_moment**2)
     rows.close("grasp_moment", grasp.name, ("norm",), np.array([-np.inf]), np.ones(1), len(rows.knots))
     rows.add(rows.outputs_at(i, rows.knots, own.cosine(grasp.frame)), 1.0)
-    bounds = np.array([np.cos(grasp.max_turn)]), np.array([np.inf])
+    bounds = np.array([grasp.least_cosine]), np.array([np.inf])
     rows.close("grasp_turn", grasp.name, ("cosine",), *bounds, len(rows.knots))
 
 

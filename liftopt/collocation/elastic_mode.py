@@ -219,8 +219,8 @@ class SoftProblem(Problem):
             amounts = share * grasps[block.who].max_moment
         elif block.name == "grasp_turn":
             # The row is the angle's cosine.
-            limit, who, unit = grasps[block.who].max_turn, [block.who], "deg"
-            amounts = np.degrees(np.arccos(np.clip(np.cos(limit) - amounts, -1.0, 1.0)) - limit)
+            who, unit = [block.who], "deg"
+            amounts = np.degrees(grasps[block.who].turn_beyond(amounts))
         elif block.name in ("friction", "pressure"):
             unit = "N" if block.name == "friction" else "Nm"
             who = [f"{block.who} {label}" for label in block.labels]

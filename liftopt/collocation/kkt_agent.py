@@ -34,7 +34,7 @@ def agent_knots(agent: Agent, y: Array, period: float) -> tuple[Array, Array]:
     outputs, jacobian = np.zeros((len(y), own.size)), np.zeros((len(y), own.size, y.shape[1]))
     slopes, mass_matrix = np.zeros((len(y), 6, n)), np.zeros((len(y), n, n))
     points, grips = np.zeros((len(frames), len(y), 3)), np.zeros((len(frames), len(y), 3, 3))
-    held = {grasp.frame: grasp.R_hand_object for grasp in agent.grasps}
+    held = {grasp.frame: grasp.R_hand_measured for grasp in agent.grasps}
     turns = [held.get(hand, np.eye(3)) for hand in agent.hands]
     for k in range(len(y)):
         outputs[k, :n] = pin.rnea(model, data, q[k], v[k], a[k])

@@ -243,10 +243,10 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
         elif agent.pushes_at_a_point:
             requests.append((agent_functions, Topology.of(model, agent.hands)))
         elif agent.is_simple:
-            grips = [grasp.R_hand_object for grasp in agent.grasps]
+            grips = [grasp.R_hand_measured for grasp in agent.grasps]
             requests.append((wrench_agent_functions, WrenchTopology.holding(model, agent.hands, *grips)))
         else:
-            own = {grasp.frame: grasp.R_hand_object for grasp in agent.grasps}
+            own = {grasp.frame: grasp.R_hand_measured for grasp in agent.grasps}
             base = np.eye(4) if agent.stance is None else agent.T_world_base
             grips = [own.get(hand, np.eye(3)) for hand in agent.hands]
             trunk = agent.lean.joint if agent.lean else ""

@@ -22,10 +22,11 @@ FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT = 100.0, 10.0  # under the soles
 def room(grasp: Grasp, force: Any, moment: Any, grip: Any, attitude: Any) -> list[Any]:
     """Return what a hold leaves of each of its limits but the force's, all of them >= 0, in sizes near one.
 
-    With moments: of the cap on their norm, as a share of it squared, and of the hand's angle on the object, as the
-    difference of the cosines. Of a flat hand: of the friction that keeps it from sliding, by the pyramid inscribed in
-    the cone about the object's z axis; with moments too, of the reach of the centre of pressure, half the breadth, and
-    of what friction holds about z of a pressure that is even over a disc of that breadth.
+    With moments: of the cap on their norm, as a share of it squared, and of the hand's angle on the object, or of that
+    to the bar in it, as the difference of the cosines. Of a flat hand: of the friction that keeps it from sliding, by
+    the pyramid inscribed in the cone about the object's z axis; with moments too, of the reach of the centre of
+    pressure, half the breadth, and of what friction holds about z of a pressure that is even over a disc of that
+    breadth.
 
     Args:
         grasp: the hold; without moments, ``moment`` and ``grip`` are not looked at.
@@ -36,7 +37,10 @@ def room(grasp: Grasp, force: Any, moment: Any, grip: Any, attitude: Any) -> lis
     """
     left = []
     if grasp.moments:
-        cosine = (ca.trace(ca.mtimes(attitude.T, grip)) - 1) / 2
+        if grasp.bar is None:
+            cosine = (ca.trace(ca.mtimes(attitude.T, grip)) - 1) / 2
+        else:
+            cosine = ca.dot(ca.mtimes(attitude, ca.DM(grasp.bar)), ca.mtimes(grip, ca.DM(grasp.bar)))
         left += [1 - ca.dot(moment, moment) / grasp.max_moment**2, cosine - float(np.cos(grasp.max_turn))]
     if grasp.friction is not None:
         ahead, aside, push = ca.vertsplit(ca.mtimes(attitude.T, force))

@@ -93,11 +93,14 @@ class Grasp:
         frame: name of the agent's frame that coincides with the object's grasp point.
         moments: whether it transmits a moment too.
         max_moment: largest norm of the moment about the grasp point [Nm].
-        max_turn: largest angle of the hand from its reference orientation on the object, about any axis [rad].
+        max_turn: largest angle of the hand from its reference orientation on the object, about any axis [rad]; around a
+            bar, of the hand from the bar.
         R_hand_object: (3, 3) the object's axes in the axes of the agent's grasp frame, at the reference orientation.
         breadth: of what holds [m]: a moment m takes contact forces of m / breadth in it, which count in the objective
             like the force itself; and how far the pressure under a flat hand can move.
         friction: None for a grip; else a flat hand that only pushes along the object's z axis, with this coefficient.
+        bar: (3,) direction in the object's axes of a bar that the hand is closed around, and turns about freely; None
+            for a hand that does not.
     """
 
     name: str
@@ -108,6 +111,28 @@ class Grasp:
     R_hand_object: Array = field(default_factory=lambda: np.eye(3))
     breadth: float = 0.085
     friction: float | None = None
+    bar: Array | None = None
+
+    @property
+    def R_hand_measured(self) -> Array:
+        """(3, 3) by which kernels take the angle of the hand on the object: they know (tr(R_object_grip) - 1) / 2.
+
+        Without a bar that is the angle's cosine, by ``R_hand_object``. With one, b^T R b takes the place of the trace,
+        the cosine between the bar and where the hand has it: a turn about the bar leaves it as it is.
+        """
+        return self.R_hand_object if self.bar is None else self.R_hand_object @ np.outer(self.bar, self.bar)
+
+    @property
+    def least_cosine(self) -> float:
+        """Least of what kernels know of that angle."""
+        most = float(np.cos(self.max_turn))
+        return most if self.bar is None else (most - 1.0) / 2.0
+
+    def turn_beyond(self, missing: Array) -> Array:
+        """Return by how much the hand is turned too far [rad], where so much is missing to ``least_cosine``."""
+        beyond = self.least_cosine - missing
+        cosine = beyond if self.bar is None else 2.0 * beyond + 1.0
+        return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)) - self.max_turn)
 
     @property
     def size(self) -> int:

@@ -286,6 +286,20 @@ def angle_between(one: Array, other: Array) -> Array:
     return np.asarray(2.0 * np.arcsin(np.minimum(1.0, chord / np.sqrt(8.0))))
 
 
+def hand_turn(grasp: Grasp, rotation: Array, grip: Array) -> Array:
+    """Return how far a hand is turned (K,) from its reference orientation on the object [rad]; around a bar, from it.
+
+    Args:
+        grasp: how it holds.
+        rotation: (K, 3, 3) the object's axes in the world.
+        grip: (K, 3, 3) the hand's grip axes in the world.
+    """
+    if grasp.bar is None:
+        return angle_between(rotation, grip)
+    one, other = rotation @ grasp.bar, grip @ grasp.bar
+    return np.asarray(2.0 * np.arcsin(np.minimum(1.0, np.linalg.norm(one - other, axis=1) / 2.0)))
+
+
 def quaternion(angles: Array) -> Array:
     """Return the quaternion (..., 4), x y z w, of Rx Ry Rz for roll, pitch and yaw (..., 3)."""
     half = np.asarray(angles) / 2

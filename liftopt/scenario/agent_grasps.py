@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from liftopt.multibody.agent import Agent, Grasp
 from liftopt.multibody.dh import rotation_z
-from liftopt.multibody.person.holds import hand_on
+from liftopt.multibody.person.holds import along_bar, hand_on
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL
 from liftopt.scenario.agents import Person
 from liftopt.scenario.grasps import PlacedGrasp, placed_grasps
@@ -23,15 +23,16 @@ def with_grasps(scenario: Scenario, agent: Agent) -> Agent:
     """Return an agent whose grasps are named and hold as the scenario says; it has one for each hold already."""
     holds = [hold for hold in placed_grasps(scenario) if hold.agent == agent.name]
     grasps = [
-        _grasp(scenario.agents[agent.name], replace(grasp, name=hold.name), _reference(scenario, hold))
+        _grasp(scenario.agents[agent.name], replace(grasp, name=hold.name), _reference(scenario, hold), hold)
         for grasp, hold in zip(agent.grasps, holds, strict=True)
     ]
     return replace(agent, grasps=tuple(grasps))
 
 
-def _grasp(who: Person | Robot, grasp: Grasp, reference: Array) -> Grasp:
+def _grasp(who: Person | Robot, grasp: Grasp, reference: Array, hold: PlacedGrasp) -> Grasp:
     friction = who.friction if isinstance(who, Person) and who.contact == "flat" else None
-    grasp = replace(grasp, R_hand_object=reference.T, friction=friction)
+    bar = along_bar(reference) if hold.hold == "handle" else None
+    grasp = replace(grasp, R_hand_object=reference.T, friction=friction, bar=bar)
     if who.grasp == "point":
         return grasp
     return replace(grasp, moments=True, max_moment=who.max_grasp_moment, max_turn=math.radians(who.grasp_turn_deg))

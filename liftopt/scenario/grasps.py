@@ -18,9 +18,10 @@ from liftopt.scenario.hands import Hand
 from liftopt.scenario.placement import lead, partner, stand_of
 from liftopt.scenario.task import GraspPlace, ObjectPlace
 
-# How far a hand underneath reaches in from the edge, and a handle is below the top [m]; of a small box a quarter of it.
-# Both are choices of this model.
-UNDERNEATH, BELOW_TOP = 0.05, 0.05
+# How far in from the edge the middle of a hand underneath is, and a handle is below the top [m]; of a small box a
+# quarter of it. Both are choices of this model. The wrist is 67 to 97 mm behind the middle of the hand (a woman of 1.5,
+# a man of 1.95 m): it has to be outside the box by the forearm's thickness where the forearm comes from above.
+UNDERNEATH, BELOW_TOP = 0.02, 0.05
 SIDE_OF: dict[Hand | None, float] = {"right": -1.0, "left": 1.0}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -13,6 +13,9 @@ from liftopt.files.section import Section
 from liftopt.scenario.agent_fields import FARTHEST, GRASPS, Weight
 from liftopt.scenario.presets import NATURAL
 from liftopt.scenario.robot_defaults import MODELS, with_model
+
+if TYPE_CHECKING:
+    from liftopt.multibody.robots.chosen_robot import ChosenRobot
 
 OF_ROBOT = NATURAL["robot"]  # where the preset is another, a scenario fills in its own
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
@@ -117,11 +120,30 @@ class Robot(Section):
             InputError: the file cannot be read or is no robot, its data are such that it cannot lift, or an entry is
                 wrong; it says which.
         """
-        from liftopt.scenario.robot_agents import refuse_unusable  # with Pinocchio, which entries are checked without
+        from liftopt.multibody.robots.examination import refuse
 
         robot = cls(model=str(Path(path).expanduser().absolute()), **entries)
-        refuse_unusable(robot)
+        found = robot.chosen().examination()
+        refuse(found, found.chain.description.source)
         return robot
+
+    def chosen(self) -> ChosenRobot:
+        """Return the robot that the entries lead to; it is read. Raises ``InputError`` as ``chosen_robot``."""
+        # With Pinocchio, which entries are checked without.
+        from liftopt.multibody.robots.chosen_robot import chosen_robot
+        from liftopt.multibody.robots.given_limits import GivenLimits
+
+        return chosen_robot(
+            self.model,
+            arguments=self.arguments,
+            grasp_frame=self.grasp_frame,
+            base_link=self.base_link,
+            locked=self.locked,
+            direction=self.tool.direction,
+            limits={
+                name: GivenLimits(own.lower, own.upper, own.velocity, own.effort) for name, own in self.limits.items()
+            },
+        )
 
     @property
     def height_key(self) -> str:

@@ -12,9 +12,7 @@ from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.joint_units import LEVER
 from liftopt.multibody.placement import Placement
-from liftopt.multibody.robots.chosen_robot import ChosenRobot, chosen_robot
-from liftopt.multibody.robots.examination import Examination, examined, refuse
-from liftopt.multibody.robots.given_limits import GivenLimits
+from liftopt.multibody.robots.chosen_robot import ChosenRobot
 from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer import sawyer_agent
@@ -68,7 +66,7 @@ def agent_of_robot(scenario: Scenario, name: str, urdf: str | None = None) -> Ag
             tool_direction=chosen.direction,
             tool_turn=math.radians(robot.tool.turn_deg),
             locked=chosen.locked,
-            limits=given_limits(robot),
+            limits=chosen.limits,
             posture=robot.posture,
             joint_weights=robot.joint_weights,
             sliding=sliding,
@@ -87,41 +85,11 @@ def is_from_file(scenario: Scenario, name: str) -> bool:
 def chosen_of(robot: Robot, name: str) -> ChosenRobot:
     """Return the robot that a scenario's entries lead to; it is read. Raises ``InputError`` as ``chosen_robot``."""
     try:
-        return chosen_robot(
-            robot.model,
-            arguments=robot.arguments,
-            grasp_frame=robot.grasp_frame,
-            base_link=robot.base_link,
-            locked=robot.locked,
-            direction=robot.tool.direction,
-        )
+        return robot.chosen()
     except InputError as error:
         if error.key == "robot":  # the name is none that is known, and no file
             raise InputError(f"{name}.model", robot.model, error.allowed) from None
         raise
-
-
-def refuse_unusable(robot: Robot) -> None:
-    """Raise ``InputError`` where a robot cannot be read, or its data are such that it cannot lift."""
-    found = examination_of(robot, "robot")
-    refuse(found, found.chain.description.source)
-
-
-def examination_of(robot: Robot, name: str) -> Examination:
-    """Return what is noticed about the data of an agent's robot; it is read. Raises ``InputError`` as ``examined``."""
-    chosen = chosen_of(robot, name)
-    return examined(
-        chosen.description,
-        grasp_frame=chosen.grasp_frame,
-        base=chosen.base_link,
-        locked=chosen.locked,
-        limits=given_limits(robot),
-    )
-
-
-def given_limits(robot: Robot) -> dict[str, GivenLimits]:
-    """Return the limits that a scenario gives in place of a URDF's, by joint."""
-    return {joint: GivenLimits(own.lower, own.upper, own.velocity, own.effort) for joint, own in robot.limits.items()}
 
 
 def T_world_base_of(scenario: Scenario, name: str) -> Array:

@@ -9,11 +9,11 @@ from liftopt.collocation.transfer import transfer
 from liftopt.search.candidate import Candidate
 from liftopt.search.found import Found
 from liftopt.search.infeasibility import find_least_violation, infeasible_candidate
-from liftopt.search.initial_guess import InitialGuess
+from liftopt.search.initial_guess import InitialGuess, blend
 from liftopt.search.make_clear import Attempt, planes_along
 from liftopt.search.session import Session
 
-START = "elastic, kept clear"
+START, POSTURES = "elastic, kept clear", "postures that come least too near"
 
 
 def explain_blocked(session: Session, spline: RestToRestSpline) -> Found | None:
@@ -27,6 +27,11 @@ def explain_blocked(session: Session, spline: RestToRestSpline) -> Found | None:
     if not session.blocked or session.deadline.passed:
         return None
     session.progress("looking for what is in the way")
+    if reasons := tuple(reason for end in session.held for reason in end.reasons):
+        problem = session.problem(spline)
+        x = blend(problem, *(end.postures[0] for end in session.held))
+        best = infeasible_candidate(session.scenario, problem, spline, InitialGuess(POSTURES, x), reasons)
+        return Found(best, reasons=reasons, near=(x,))
     attempt = session.blocked[0]
     free, problem = attempt.origin, session.problem(spline)
     x = transfer(free.problem, free.spline, free.result.x, problem, spline)

@@ -110,8 +110,7 @@ def _screen_end(
 def _outside(problem: Problem, name: str, outside: Array, twisted: Array) -> InfeasibilityReason:
     if twisted.max() > outside.max():
         grasp = problem.team.grasps[int(np.argmax(twisted))]
-        limit, lacking = grasp.max_turn, float(twisted.max())
-        amount = float(np.degrees(np.arccos(np.clip(np.cos(limit) - lacking, -1.0, 1.0)) - limit))
+        limit, amount = grasp.max_turn, float(np.degrees(grasp.turn_beyond(twisted.max())))
         whose = whose_hold(grasp.name, problem.team.agents)
         text = f"held back at the {name} of the lift: {whose} hand would have to turn "
         text += f"{amount:.0f} deg farther on the object than the {np.degrees(limit):.0f} deg allowed"
@@ -159,7 +158,7 @@ def _strength(
     if posture := _hold(postures, pose, seeds[:NEAREST], deadline):
         return None, posture
     # Postures of little torque are near those that the limits allow, and found from nearly every seed without them.
-    found = distinct(_stronger(problem, STRONGEST).search(pose, seeds, deadline), DIFFERENT)
+    found = distinct(stronger(problem, STRONGEST).search(pose, seeds, deadline), DIFFERENT)
     if not found:
         return None
     found.sort(key=lambda posture: _tightest(problem, posture)[0])
@@ -171,7 +170,7 @@ def _strength(
         while strong / weak > PRECISION and not deadline.passed:
             middle = (weak * strong) ** 0.5
             # What holds with more strength is the best seed for less.
-            posture = _hold(_stronger(problem, middle), pose, [held.coordinates, *near], deadline)
+            posture = _hold(stronger(problem, middle), pose, [held.coordinates, *near], deadline)
             weak, strong, held = (weak, middle, posture) if posture else (middle, strong, held)
         if posture := _hold(postures, pose, [held.coordinates], deadline):
             return None, posture
@@ -199,7 +198,7 @@ def _hold(postures: PostureSolver, pose: Array, seeds: list[Array], deadline: De
     return next(filter(None, postures.search(pose, seeds, deadline)), None)
 
 
-def _stronger(problem: Problem, factor: float) -> PostureSolver:
+def stronger(problem: Problem, factor: float) -> PostureSolver:
     """Return the search for postures with ``factor`` times the strength."""
     agents = []
     for agent in problem.team.agents:

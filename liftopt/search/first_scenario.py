@@ -17,7 +17,7 @@ from liftopt.multibody.robots.sawyer_description import PAYLOAD
 from liftopt.scenario.build import agent_of, motions_of
 from liftopt.scenario.model import scenario_from_dict
 from liftopt.scenario.robot import Robot
-from liftopt.scenario.robot_agents import chosen_of, examination_of
+from liftopt.scenario.robot_agents import chosen_of
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.search.cache import SolverCache
 from liftopt.search.feasibility_screen import screen_ends
@@ -89,7 +89,7 @@ def _known(robot: Mapping[str, Any]) -> _Robot:
     chosen = chosen_of(section, NAME)
     published = None if chosen.known is None else chosen.known.payload
     payload = section.payload or published or float("inf")
-    chain = examination_of(section, NAME).chain
+    chain = chosen.examination().chain
     has_hand = any(FINGER.search(link) for link in chain.links[-1].links)
     given = "tool" in robot or has_hand or payload < 4.0 * GRIPPER["mass"]
     return _Robot(robot if given else {**robot, "tool": dict(GRIPPER)}, payload, MOBILE in chain.base)

@@ -16,6 +16,7 @@ import numpy as np
 from liftopt.collocation.batch import Batch
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.separating_planes import WORLD
+from liftopt.collocation.solvers.result import SolverResult
 from liftopt.multibody.agent import Agent, HalfSpace
 from liftopt.search.candidate import Candidate
 from liftopt.search.holder_sides import is_of_an_arm
@@ -37,19 +38,32 @@ def held_off(clearer: Clearer, candidate: Candidate, deep: Iterable[int]) -> Ite
         candidate: an optimum without planes.
         deep: numbers of the pairs that overlap in it; none come where nobody has the object, or folds, in the body.
     """
-    problem, x, pairs = candidate.problem, candidate.result.x, list(deep)
+    for result in led_ahead(clearer, candidate.problem, candidate.result.x, deep):
+        yield replace(candidate, result=replace(result, converged=False))
+
+
+def led_ahead(clearer: Clearer, problem: Problem, x: Array, deep: Iterable[int]) -> Iterator[SolverResult]:
+    """Yield optima of a problem with hands farther and farther ahead, and less room to fold.
+
+    Args:
+        clearer: gives solvers and the deadline.
+        problem: without planes.
+        x: (n_x,) an optimum of it.
+        deep: as for ``held_off``.
+    """
+    free, pairs = x, list(deep)
     folding = _folding(clearer.solids, pairs)
     nearest, farthest = _hands(problem, x) if _in_the_lap(clearer.solids, pairs) else (np.inf, np.inf)
     aside = not np.isfinite(nearest)
     for step in range(1, STEPS + 1):
         ahead = min(nearest + STEP * step, farthest - BEFORE_ENDS)
-        limited = _limited(problem, 0.0 if aside else ahead, candidate.result.x, folding, 1.0 - NARROWER * step)
+        limited = _limited(problem, 0.0 if aside else ahead, free, folding, 1.0 - NARROWER * step)
         if (not folding and (aside or ahead <= nearest + STEP * (step - 1))) or clearer.deadline.passed:
             return
         result = clearer.solver(limited).solve(x, deadline=clearer.deadline, problem=limited, most=ITERATIONS)
         if result.converged:
             x = result.x
-            yield replace(candidate, result=replace(result, converged=False))
+            yield result
 
 
 def _limited(problem: Problem, ahead: float, x: Array, folding: Sequence[tuple[int, int]], share: float) -> Problem:

@@ -1,8 +1,8 @@
 """On which side of the object parts of those who hold it belong.
 
 A hand that holds an object by its side leaves its forearm outside that side; where the two overlap, that is the way
-out, although another one may be shorter. A hand at an edge may come from either face, so nothing is known of its arm.
-Legs and trunk are behind what is held.
+out, although another one may be shorter. A hand underneath leaves it below, or on the side of whoever holds it. A hand
+at an edge may come from either face, so nothing is known of its arm. Legs and trunk are behind what is held.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from liftopt.multibody.solids import Solid
 from liftopt.types import Array
 
 ON_FACE = 1e-3  # [m]
+LEVEL = 0.9  # cosine of the angle of a face's normal from the vertical, of which it counts as level
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,11 @@ class HolderSide:
     """Where a part of a holder belongs.
 
     Attributes:
-        normal: (3,) unit vector from the second solid of the pair to the first, in the object's axes.
+        normals: (S, 3) unit vectors from the second solid of the pair to the first, in the object's axes; any will do.
         object_is_first: whether the object is the first solid of the pair.
     """
 
-    normal: Array
+    normals: Array
     object_is_first: bool
 
 
@@ -64,11 +65,16 @@ def holder_sides(
 
 
 def _side_of(team: Team, body: Body, box: Solid) -> Array | None:
-    """Return the direction (3,) from the object in which a holder's body belongs, in the object's axes, or None."""
-    if is_of_an_arm(team, body):
-        return _face(team, box, held_by(team, body))
+    """Return the directions (S, 3) from the object in which a holder's body belongs, in the object's axes, or None."""
     agent = team.agents[body.part]
-    return None if agent.stance is None else np.asarray(-agent.T_world_base[:3, 0])
+    behind = None if agent.stance is None else -agent.T_world_base[:3, 0]
+    if not is_of_an_arm(team, body):
+        return None if behind is None else behind[None]
+    face = _face(team, box, held_by(team, body))
+    if face is None:
+        return None
+    underneath = face[2] < -LEVEL
+    return np.array([face] if behind is None or not underneath else [face, behind])
 
 
 def is_of_an_arm(team: Team, body: Body) -> bool:

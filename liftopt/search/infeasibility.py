@@ -35,11 +35,13 @@ class LeastViolation:
         x: (n_x,) its unknowns.
         reasons: what it breaks, the costliest first; empty if it breaks nothing, so that there is a lift near it.
         sure: it is a local optimum: no motion near it breaks less.
+        price: of all that it breaks, to compare by.
     """
 
     x: Array
     reasons: tuple[InfeasibilityReason, ...]
     sure: bool
+    price: float
 
 
 def find_least_violation(problem: Problem, starts: Sequence[Array], deadline: Deadline) -> LeastViolation | None:
@@ -61,7 +63,7 @@ def find_least_violation(problem: Problem, starts: Sequence[Array], deadline: De
         return None
     best = min(found, key=lambda motion: (not motion.converged, sum(v.price for v in motion.violations)))
     reasons = tuple(_in_words(problem, violation) for violation in best.violations[:MOST_REASONS])
-    return LeastViolation(best.x, reasons, best.converged)
+    return LeastViolation(best.x, reasons, best.converged, sum(v.price for v in best.violations))
 
 
 def nearest_motion(

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from liftopt.search.candidate import Candidate
+from liftopt.search.clear_postures import clear_ends, starts_between
 from liftopt.search.elastic_clearing import cleared_elastically
 from liftopt.search.held_off import held_off
 from liftopt.search.make_clear import Attempt, Clearer
@@ -24,6 +25,8 @@ FAILING = 4
 PASSED = 2
 # Pairs whose other side is tried, each alone: where many overlap, one of them decides little.
 AVOIDED = 6
+BETWEEN = 4  # motions between clear postures that are tried
+ELASTIC = 3  # times that the elastic mode clears one of them, each with the pairs that the last one led into each other
 HELD_OFF = 2  # clear optima that are wanted where the object is held off: the first may pass on a worse side
 
 
@@ -60,6 +63,7 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
     if not found:
         session.blocked = failed
         found = _anyhow(session, clearer, failed[:PASSED])
+        session.detoured = bool(failed) and not found
     if not found:
         return []
     return [c for c in each_once(found) if c.result.objective <= PROMISING * min(map(objective_of, found))]
@@ -84,12 +88,43 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
             session.blocked = []
             return [*candidates[:n], attempt.candidate, *candidates[n + 1 :]]
         session.blocked.append(attempt)
+    if session.detoured:  # what led nowhere on the coarse mesh leads nowhere here either
+        return list(candidates)
     return [*_anyhow(session, clearer, session.blocked[:PASSED]), *candidates]
 
 
 def _anyhow(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
     """Return clear optima that a detour leads to, from what the overlaps alone did not lead to any."""
-    return _passing(session, clearer, failed) or _out_of_the_lap(clearer, failed) or _other_sides(clearer, failed)
+    if failed and not session.held:
+        motions = [attempt.origin.result.x for attempt in failed]
+        session.held = clear_ends(session, clearer, failed[0].origin.problem, motions)
+    if session.blocked_at_rest:
+        return []
+    return (
+        _passing(session, clearer, failed)
+        or _out_of_the_lap(clearer, failed)
+        or _other_sides(clearer, failed)
+        or _between_clear_postures(session, clearer, failed)
+    )
+
+
+def _between_clear_postures(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima that motions between clear postures lead to."""
+    found: list[Candidate] = []
+    for first in failed[:1]:
+        for start in starts_between(session, first.origin.problem, BETWEEN):
+            if len(found) == HELD_OFF or session.deadline.passed:
+                break
+            result = replace(first.origin.result, x=start.x, converged=False)
+            motion, also = replace(first.origin, start=start.name, result=result), first.deep
+            attempt: Attempt | None = clearer.make_clear(motion, polish=False, also=also)
+            for turn in range(ELASTIC):
+                if attempt is None or attempt.clear or (turn and attempt.deep <= also):
+                    break
+                also |= attempt.deep
+                attempt = cleared_elastically(clearer, motion, also)
+            found += [attempt.candidate] if attempt is not None and attempt.clear else []
+    return found
 
 
 def _out_of_the_lap(clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:

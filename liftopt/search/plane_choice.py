@@ -215,8 +215,8 @@ def _off_side(solids: TeamSolids, found: SolidDistances, p: int, directions: Arr
     """Return what each direction (K, D) costs for being off the side of the object where its holder's part belongs."""
     side = solids.sides[p]
     box = solids.ends[p, 0 if side.object_is_first else 1]
-    normal = found.placements[:, box, :3, :3] @ side.normal
-    return np.asarray(OFF_SIDE * (1.0 - np.einsum("kda,ka->kd", directions, normal)))
+    normals = np.einsum("kab,sb->ksa", found.placements[:, box, :3, :3], side.normals)
+    return np.asarray(OFF_SIDE * (1.0 - np.einsum("kda,ksa->kds", directions, normals).max(axis=2)))
 
 
 def _is_placed(solids: TeamSolids, p: int) -> bool:

@@ -11,6 +11,7 @@ from liftopt.collocation.spline import RestToRestSpline
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import BANDED, IPOPT, SolverCache
+from liftopt.search.clear_end import ClearEnd
 from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.solution.solution import CUT_SHORT, StartRecord
 from liftopt.types import Progress
@@ -35,6 +36,8 @@ class Session:
         records: the starts that count, each with where it led.
         notes: what the user should know.
         blocked: optima that could not be made clear, on one mesh, the most promising first.
+        held: clear postures at both ends, where no optimum could be made clear; empty where that is not known.
+        detoured: whether all ways to make optima clear were tried on a coarse mesh, to no avail.
         cut: where the time limit ended the search too early, in one line; empty where it did not.
     """
 
@@ -57,6 +60,8 @@ class Session:
         self.records: list[StartRecord] = []
         self.notes: list[str] = []
         self.blocked: list[Attempt] = []
+        self.held: tuple[ClearEnd, ...] = ()
+        self.detoured = False
         problem = self.problem(self.spline)
         self.solvers(problem)
         self.postures = cache.postures(problem, scenario, self.progress)
@@ -120,6 +125,11 @@ class Session:
         """Go on to finish what was found, in the time that was kept for it."""
         self.note_time()
         self._finishing = True
+
+    @property
+    def blocked_at_rest(self) -> bool:
+        """Whether no posture was found at one end that holds the object with bodies apart."""
+        return any(end.reasons for end in self.held)
 
     def record(self, name: str, result: SolverResult) -> None:
         """Keep where a start led."""

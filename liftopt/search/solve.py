@@ -87,12 +87,12 @@ def search(session: Session) -> Found:
         if optima and (found := refine_mesh(session, optima, spline.intervals)) is not None:
             return found
         if (found := explain_blocked(session, spline)) is not None:
-            return found if found.best.usable else search_wider(session) or found
+            return found if found.best.usable or session.detoured else search_wider(session) or found
         starts = guesses.starts(problem, options.starts)
     session.finish()
     session.begin_solving()
     found = solve_starts(session, spline, [*starts, naive_guess(problem)][: options.starts])
-    return found if found.best.usable or guesses is None else search_wider(session) or found
+    return found if found.best.usable or session.detoured or guesses is None else search_wider(session) or found
 
 
 def search_wider(session: Session) -> Found | None:

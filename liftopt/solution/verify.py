@@ -21,7 +21,7 @@ from liftopt.multibody.leaning import trunk_tilt
 from liftopt.multibody.solid_pairs import solid_pairs
 from liftopt.multibody.solids import Solid
 from liftopt.multibody.standing import ground_in_base
-from liftopt.multibody.trajectory import AgentTrajectory, angle_between, attitude, grasps_of, turned
+from liftopt.multibody.trajectory import AgentTrajectory, attitude, grasps_of, hand_turn, turned
 from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, TOUCH, Check, Verification
 from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
@@ -141,7 +141,7 @@ def _holds(motion: Motion, limit: float) -> list[Check]:
         if grasp.moments:
             excess = np.linalg.norm(moment, axis=1) - grasp.max_moment
             checks.append(_worst("grasp moment cap", excess[:, None], limit, "Nm", [grasp.name], motion.time))
-            angle = angle_between(rotation, agent.grip_rotation[:, own]) - grasp.max_turn
+            angle = hand_turn(grasp, rotation, agent.grip_rotation[:, own]) - grasp.max_turn
             checks.append(_worst("hand on the object", angle[:, None], limit, "rad", [grasp.name], motion.time))
         back = rotation.swapaxes(1, 2)
         local = np.hstack([turned(back, force), turned(back, moment)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -11,7 +12,7 @@ import pytest
 from liftopt.collocation.kkt_agent import agent_knots
 from liftopt.collocation.outputs import outputs_of
 from liftopt.multibody.agent import Agent
-from liftopt.multibody.trajectory import agent_trajectory, attitude
+from liftopt.multibody.trajectory import agent_trajectory, attitude, hand_turn
 
 PERIOD = 1.7
 
@@ -48,6 +49,31 @@ def test_outputs_are_those_of_the_trajectory(porter: Agent, rng: np.random.Gener
         np.testing.assert_allclose(c[:, own.cosine(grasp.frame)][:, 0], (held - 1) / 2, atol=1e-12)
         local = np.einsum("kab,kda->kdb", rotation, wrench[:, used[g]].reshape(5, 2, 3)).reshape(5, 6)
         np.testing.assert_allclose(c[:, own.wrench(grasp.frame)], local, atol=1e-12)
+
+
+def test_a_hand_around_a_bar_is_measured_by_its_angle_to_the_bar(porter: Agent, rng: np.random.Generator) -> None:
+    """Pinocchio's frames turned about the bar by any angle, and tilted; finite differences of what is between."""
+    bar = rng.normal(size=3)
+    bar /= np.linalg.norm(bar)
+    around = replace(porter, grasps=tuple(replace(grasp, bar=bar, max_turn=0.5) for grasp in porter.grasps))
+    y, own = rng.normal(size=(1, 3 * 12 + 2 * 6 + 3)), outputs_of(around)
+    found = agent_trajectory(around, y[:, :12], y[:, 12:24], y[:, 24:36], np.zeros((1, len(around.grasps), 3)))
+    for g, grasp in enumerate(around.grasps):
+        grip = found.grip_rotation[0, g]
+        for roll, tilt in ((0.0, 0.0), (2.5, 0.0), (-1.0, 0.7)):
+            aside = np.cross(bar, rng.normal(size=3))
+            turn = pin.exp3(tilt * aside / np.linalg.norm(aside)) @ pin.exp3(roll * bar)
+            rotation = grip @ turn.T
+            y[0, -3:] = pin.rpy.matrixToRpy(rotation.T) * -1.0  # Rx(a) Ry(b) Rz(c) is (Rz(-c) Ry(-b) Rx(-a)) transposed
+            known = float(agent_knots(around, y, PERIOD)[0][0, own.cosine(grasp.frame)][0])
+            assert hand_turn(grasp, rotation[None], grip[None])[0] == pytest.approx(tilt, abs=1e-7)
+            assert grasp.turn_beyond(np.array(grasp.least_cosine - known)) == pytest.approx(tilt - 0.5, abs=1e-7)
+    jacobian = agent_knots(around, y, PERIOD)[1][0]
+    rows = [own.cosine(grasp.frame).start for grasp in around.grasps]
+    for column in range(y.shape[1]):
+        step = 1e-6 * np.eye(y.shape[1])[column]
+        after, before = (agent_knots(around, y + s * step, PERIOD)[0][0, rows] for s in (1.0, -1.0))
+        np.testing.assert_allclose(jacobian[rows, column], (after - before) / 2e-6, atol=1e-8)
 
 
 def test_the_ground_gives_what_changes_the_momentum(porter: Agent, rng: np.random.Generator) -> None:

@@ -13,8 +13,13 @@ import pytest
 
 pytest.importorskip("yourdfpy")
 
+from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.commands.cli import main
 from liftopt.multibody.robots.catalogue import known_robots
+from liftopt.scenario.build import motions_of
+from liftopt.scenario.model import load_scenario
+from liftopt.search.cache import SolverCache
+from liftopt.search.feasibility_screen import screen_ends
 
 ROOT = Path(__file__).parents[2]
 BODY = '<inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
@@ -121,3 +126,17 @@ def test_help_and_the_list_load_no_reader() -> None:
     code = "import sys; from liftopt.commands.cli import main; main(['robots']); print('yourdfpy' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd="/")
     assert run.stdout.splitlines()[-1] == "False"
+
+
+def test_a_scenario_to_start_from_can_be_held_at_both_ends(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Oracle: the screen of the search, which looks for postures with other seeds here."""
+    if not known_robots()["ur5"].is_installed:
+        pytest.skip("needs example-robot-data")
+    file = tmp_path / "lift.toml"
+    assert main(["robots", "ur5", "--scenario", str(file)]) == 0
+    assert f"Written to {file}" in capsys.readouterr().out
+    scenario = load_scenario(file)
+    problem = SolverCache().problem(scenario, motions_of(scenario))
+    assert screen_ends(problem, 1, Deadline())[0] == []
+    assert main(["robots", "ur5", "--scenario", str(file)]) == 2
+    assert "exists already" in capsys.readouterr().err

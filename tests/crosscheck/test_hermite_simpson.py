@@ -21,8 +21,8 @@ from liftopt.multibody.standing import ground_in_base
 from liftopt.multibody.trajectory import (
     AgentTrajectory,
     agent_trajectory,
-    angle_between,
     attitude,
+    hand_turn,
     object_trajectory,
     turned,
 )
@@ -33,6 +33,7 @@ from liftopt.types import Array
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 STATES = 5
 WHOLE = {"objective.preset": "natural", "human.body": "whole"}
+HANDLES = {"object.grasps": {"human_right": "handle", "human_left": "handle"}}
 FLAT = {"objective.preset": "natural", "human.contact": "flat", "human.friction": 0.5}
 
 
@@ -69,9 +70,17 @@ def still(solved: Callable[..., Any]) -> MeshStudy:
         (FLAT, [0, 1, 2, 3, 4, 5]),
         (FLAT | {"robot.grasp": "point"}, [0, 1, 2, 3, 4, 5]),
         (WHOLE, [0, 1, 2, 3, 4, 5]),
+        (WHOLE | HANDLES, [0, 1, 2, 3, 4, 5]),
         (WHOLE | FLAT | {"human.hands": ["left"]}, [0, 1, 2, 3, 4, 5]),
     ],
-    ids=["two points", "a flat hand and a gripper", "a flat hand and a point", "two hands", "a flat left hand"],
+    ids=[
+        "two points",
+        "a flat hand and a gripper",
+        "a flat hand and a point",
+        "two hands",
+        "two handles",
+        "a flat left hand",
+    ],
 )
 def test_equations_are_those_of_pinocchio_in_double_precision(keys, free):
     scenario = lo.load_scenario("table5_paper", keys)
@@ -110,7 +119,7 @@ def _room(body: AgentTrajectory, hand: int, turn: Array) -> Array:
     grasp, back, left = body.grasps[hand], turn.swapaxes(1, 2), [np.empty((len(turn), 0))]
     if grasp.moments:
         used = np.linalg.norm(body.grasp_moment[:, hand], axis=1) / grasp.max_moment
-        angle = angle_between(body.grip_rotation[:, hand], turn)
+        angle = hand_turn(grasp, turn, body.grip_rotation[:, hand])
         left.append(np.stack([1 - used**2, np.cos(angle) - np.cos(grasp.max_turn)], axis=1))
     wrench = np.hstack([turned(back, body.grasp_force[:, hand]), turned(back, body.grasp_moment[:, hand])])
     units = {"friction": FORCE_UNIT, "pressure": MOMENT_UNIT}

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from liftopt.assessment.grasp import share_finding
 from liftopt.assessment.person import person_findings
 from liftopt.assessment.who import who_is
 from liftopt.ergonomics.measures import ergonomics_of
@@ -85,6 +86,13 @@ def test_with_both_hands_alone_the_guides_apply(lifted: Callable[..., Solution])
     assert (scopes["niosh"], scopes["acgih"], scopes["whole_posture"]) == ("applies",) * 3
     one = lifted(SQUAT, hands=("right",))
     assert ergonomics_of(one, one.agents[0]).niosh.out_of_scope[0] == "it is not for one-handed lifts"
+
+
+def test_one_who_lifts_alone_is_told_no_shares(lifted: Callable[..., Solution]) -> None:
+    lift = lifted(SQUAT)
+    (person,) = lift.agents
+    told = share_finding(lift, person, who_is(person, lift.agents))
+    assert (told.title, told.value, told.severity) == ("carries the load alone", 1.0, "info")
 
 
 def test_the_spine_bears_more_in_a_heavier_lift_and_is_told(lifted: Callable[..., Solution]) -> None:

@@ -69,6 +69,16 @@ def test_palms_turn_with_the_side_that_they_hold_and_hands_under_an_edge_with_th
         np.testing.assert_allclose(left.R_hand_object.T, about_z @ hand_on(place, "left"), atol=1e-12)  # type: ignore[arg-type]
 
 
+def test_a_hand_in_a_handle_turns_about_a_bar_along_its_side() -> None:
+    turned = {"human.heading_deg": 90.0, "human.position": [0.6, -0.7]}
+    turned |= {"task.start": {"x": 0.6, "z": 0.8}, "task.end": {"x": 0.6, "z": 1.1}}
+    for changes, along in (({}, [1.0, 0.0, 0.0]), (turned, [0.0, 1.0, 0.0])):
+        for grasp in agent_of(held("handle", **changes), "human").grasps:
+            assert grasp.bar is not None
+            np.testing.assert_allclose(grasp.bar, along, atol=1e-12)
+    assert all(grasp.bar is None for place in ("side", "edge") for grasp in agent_of(held(place), "human").grasps)
+
+
 def test_another_place_is_another_agent_to_caches() -> None:
     edge, side = held("edge"), held("side")
     assert agent_key(edge, "human") != agent_key(side, "human")

@@ -59,7 +59,7 @@ def test_two_hands_are_a_shoulders_breadth_apart_or_at_the_ends_of_a_narrow_edge
 @pytest.mark.parametrize(
     ("place", "right"),
     [
-        ("bottom", (-0.25, None, -0.15)),  # 0.05 m in from the edge
+        ("bottom", (-0.28, None, -0.15)),  # 0.02 m in from the edge
         ("corner", (-0.3, -0.2, -0.15)),
         ("side", (0.0, -0.2, 0.0)),
         ("handle", (0.0, -0.2, 0.1)),  # 0.05 m below the top

@@ -27,7 +27,7 @@ def sides(found: TeamSolids, of_arms: bool) -> dict[str, np.ndarray]:
         assert side.object_is_first == (pair.one.owner == found.team.object.name)
         name = pair.other.name if side.object_is_first else pair.one.name
         if of_arms == any(word in name for word in ("arm", "hand")):
-            told[name] = side.normal * (-1.0 if side.object_is_first else 1.0)
+            told[name] = side.normals * (-1.0 if side.object_is_first else 1.0)
     return told
 
 
@@ -35,8 +35,15 @@ def sides(found: TeamSolids, of_arms: bool) -> dict[str, np.ndarray]:
 def test_an_arm_is_beside_the_side_that_it_holds(place: str) -> None:
     told = sides(solids(**{"object.grasps": {"human_right": place, "human_left": place}}), True)
     assert sum("forearm" in name for name in told) == 2
-    for name, normal in told.items():
-        np.testing.assert_array_equal(normal, [0.0, OUTSIDE["right" if "right" in name else "left"], 0.0])
+    for name, normals in told.items():
+        np.testing.assert_array_equal(normals, [[0.0, OUTSIDE["right" if "right" in name else "left"], 0.0]])
+
+
+def test_an_arm_whose_hand_is_underneath_is_below_or_on_the_side_of_who_holds() -> None:
+    told = sides(solids(**{"object.grasps": {"human_right": "bottom", "human_left": "bottom"}}), True)
+    assert sum("forearm" in name for name in told) == 2
+    for normals in told.values():
+        np.testing.assert_allclose(normals, [[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]], atol=1e-15)
 
 
 def test_nothing_is_known_of_arms_at_edges_of_free_ones_and_of_those_who_have_one() -> None:
@@ -49,5 +56,5 @@ def test_nothing_is_known_of_arms_at_edges_of_free_ones_and_of_those_who_have_on
 def test_legs_and_trunk_are_behind_what_is_held() -> None:
     told = sides(solids(), False)
     assert sum("thigh" in name for name in told) == 2
-    for normal in told.values():
-        np.testing.assert_allclose(normal, [-1.0, 0.0, 0.0], atol=1e-15)
+    for normals in told.values():
+        np.testing.assert_allclose(normals, [[-1.0, 0.0, 0.0]], atol=1e-15)

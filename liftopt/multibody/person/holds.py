@@ -17,8 +17,9 @@ Direction = tuple[float, float, float]
 HALF = float(np.sqrt(0.5))
 # Where the fingers of a right hand point, and where its palm looks. Under an edge or the bottom the palm is up and the
 # fingers ahead; at a corner they point in towards the middle as well. On the sides both palms look at each other, the
-# fingers ahead and down. In a handle, a bar along X, the fist hangs: palm inwards, thumb ahead. Choices of this model,
-# as a person who stands before a box would hold it; a grasp may turn from there (``Grasp.max_turn``).
+# fingers ahead and down. In a handle, a bar along X, the fist hangs: palm inwards, thumb ahead; about the bar it turns
+# as it likes (``Grasp.bar``). Choices of this model, as a person who stands before a box would hold it; a grasp may
+# turn from there (``Grasp.max_turn``).
 RIGHT_HAND: dict[Hold, tuple[Direction, Direction]] = {
     "edge": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     "bottom": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
@@ -35,3 +36,8 @@ def hand_on(hold: Hold, hand: Literal["right", "left"]) -> Array:
     if hand == "right":
         return frame
     return np.asarray(np.diag([1.0, -1.0, 1.0]) @ frame @ np.diag([1.0, 1.0, -1.0])) + 0.0
+
+
+def along_bar(hand: Array) -> Array:
+    """Return the direction (3,) of the bar that a hand with axes (3, 3) is closed around: to the thumb."""
+    return np.asarray(hand[:, 1])

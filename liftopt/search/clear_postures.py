@@ -1,0 +1,206 @@
+"""Static postures with bodies apart, where no motion was found that keeps them so.
+
+One knot is solved in a few milliseconds, with planes too, so many postures can be tried at both ends of a lift. If none
+holds the object clear at an end, the one that comes least too near says which bodies are in the way. If some do, they
+are good ends of a motion: between them much less is in the way than between the cheapest ones, in which a person folds
+around the object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.separating_planes import SeparatingPlanes
+from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.collocation.solvers.result import Solver
+from liftopt.errors import SolverError
+from liftopt.search.clear_end import ClearEnd
+from liftopt.search.feasibility_screen import stronger
+from liftopt.search.held_off import led_ahead
+from liftopt.search.infeasibility import LeastViolation, find_least_violation
+from liftopt.search.initial_guess import SAME_POSTURE, InitialGuess, InitialGuessSet
+from liftopt.search.make_clear import CLEAR, MARGIN, WATCHED, Clearer, Pairs
+from liftopt.search.moves import find_moves
+from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
+from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture, distinct, seed_coordinates
+from liftopt.search.session import Session
+from liftopt.search.solid_distances import SolidDistances, solid_distances
+from liftopt.solution.infeasibility_report import InfeasibilityReason
+from liftopt.types import Array
+
+SEEDS = 96
+# Of the postures found at an end so many are to be made clear, and so many are tried, the cheapest first.
+WANTED, MOST = 6, 32
+ROUNDS = 4  # solves of one posture, each with new planes
+# A motion may begin to fall at its ends, so that it takes somewhat less strength than holding still there.
+RELIEF = 1.1
+# What is in the way at rest is in the way of every motion where it is more than this [m, deg, share of a limit].
+DECISIVE = {"m": 0.01, "deg": 5.0}
+DECISIVE_SHARE = 0.1
+EXPLAINED = 4  # postures for which it is looked what is in the way; the least of that is told
+AT_REST = " at 0.00 s"  # as reasons have it of a problem of one knot
+
+
+def clear_ends(session: Session, clearer: Clearer, problem: Problem, known: Sequence[Array]) -> tuple[ClearEnd, ...]:
+    """Return clear postures at both ends; nothing where they cannot be searched for, or there was no time.
+
+    Args:
+        session: of the search.
+        clearer: of the team.
+        problem: the lift, on any mesh.
+        known: motions (n_x,) of it whose ends are tried first.
+    """
+    task, ends = problem.task, []
+    for name, pose, at in (("start", task.start, 0), ("end", task.end, -1)):
+        try:
+            end = _End(session, clearer, pose).searched([problem.unpack(x)[0][at] for x in known])
+        except SolverError:  # an extension that is missing
+            return ()
+        if not end.postures or session.deadline.passed:
+            return ()
+        when = 0.0 if at == 0 else task.duration
+        told = [replace(r, time=when, static=True, message=_at_end(r.message, name)) for r in end.reasons]
+        ends.append(replace(end, reasons=tuple(told)))
+    return tuple(ends)
+
+
+def starts_between(session: Session, problem: Problem, count: int) -> list[InitialGuess]:
+    """Return up to ``count`` motions of a problem between clear postures, the most promising first; none without."""
+    if not session.held or session.blocked_at_rest:
+        return []
+    first, last = (end.postures for end in session.held)
+    moves = find_moves(problem, session.postures, first, last, count)
+    return InitialGuessSet(first, last, moves).starts(problem, count)
+
+
+def _at_end(message: str, name: str) -> str:
+    """Return what is in the way of one posture as what is in the way at an end."""
+    return message.replace(AT_REST, f" at the {name} of the lift, in every posture found")
+
+
+class _End:
+    """The search at one end."""
+
+    def __init__(self, session: Session, clearer: Clearer, pose: Array) -> None:
+        self.session, self.pose = session, pose
+        self.still = session.postures.problem.at_pose(pose)
+        self.postures = stronger(session.postures.problem, RELIEF)
+        self.problem = self.postures.problem.at_pose(pose)
+        self.clearer = replace(clearer, solver=self._solver)
+        self._solvers: dict[bool, Solver] = {}
+
+    def searched(self, known: Sequence[Array]) -> ClearEnd:
+        """Return clear postures, from the coordinates that are ``known`` and from random seeds."""
+        rng = np.random.default_rng(self.session.scenario.solver.seed)
+        seeds = [*known, *(seed_coordinates(self.problem, self.pose, rng if i else None) for i in range(SEEDS))]
+        found = [p.rounded() for p in self.postures.search(self.pose, seeds, self._deadline) if p]
+        if not found:
+            layout = self.problem.layout
+            starts = [self.problem.pack(q[None], np.zeros((1, layout.force.shape[1]))) for q in known[:EXPLAINED]]
+            return self._explained(starts)
+        clear: list[Posture] = []
+        blocked: list[tuple[float, Array]] = []
+        for posture in sorted(distinct(found, SAME_POSTURE), key=_cost)[:MOST]:
+            if len(clear) == WANTED or self._deadline.passed:
+                break
+            for x in self._starts(posture):
+                after, depth = self._made_clear(x, posture.cost)
+                if after:
+                    clear.append(after)
+                    break
+                blocked.append((depth, x))
+        if clear:
+            return ClearEnd(tuple(sorted(distinct(clear, SAME_POSTURE), key=_cost)))
+        return self._explained([x for _, x in sorted(blocked, key=lambda entry: entry[0])[:EXPLAINED]])
+
+    @property
+    def _deadline(self) -> Deadline:
+        return self.session.deadline
+
+    def _starts(self, posture: Posture) -> Iterator[Array]:
+        """Yield a posture, and then others with the object farther from whoever holds it."""
+        x = self.problem.pack(posture.coordinates[None], posture.force[None])
+        yield x
+        deep = np.flatnonzero(self._look(x).distance[0] < self.clearer.asked - CLEAR)
+        for result in led_ahead(self.clearer, self.problem, x, deep.tolist()):
+            yield result.x
+
+    def _look(self, x: Array) -> SolidDistances:
+        return solid_distances(self.clearer.solids, self.problem, self.problem.unpack(x)[0], NEAR)
+
+    def _made_clear(self, x: Array, cost: float) -> tuple[Posture | None, float]:
+        """Return the clear posture that one of a cost leads to, or None and how deep its deepest overlap is [m]."""
+        watched: Pairs = np.array([], dtype=np.int64)
+        planes: SeparatingPlanes | None = None
+        depth, posture = np.inf, None
+        for turn in range(ROUNDS + 1):
+            found = self._look(x)
+            room = found.distance[0] - self.clearer.asked
+            depth = min(depth, -float(room.min()))
+            if room.min() >= -CLEAR and (turn == 0 or posture):
+                return posture or self._posture(x, cost), 0.0
+            if turn == ROUNDS or (turn and posture is None):
+                break
+            watched = np.union1d(watched, np.flatnonzero(room < WATCHED))
+            planes = self._planes(found, watched, MARGIN, planes)
+            apart = self.problem.apart(planes)
+            result = self._solver(apart).solve(x, deadline=self._deadline, problem=apart, most=MAX_ITERATIONS)
+            x, posture = result.x, self._posture(result.x, result.objective) if result.converged else None
+        return None, depth
+
+    def _planes(
+        self, found: SolidDistances, pairs: Pairs, margin: float, like: SeparatingPlanes | None = None
+    ) -> SeparatingPlanes:
+        crossing = frozenset(np.flatnonzero(found.distance[0] < self.clearer.asked - CLEAR).tolist())
+        options = PlaneOptions(self.clearer.clearance + margin, margin, None, crossing)
+        return choose_planes(self.clearer.solids, found, pairs, options, like)
+
+    def _posture(self, x: Array, cost: float) -> Posture:
+        control, force = self.problem.unpack(x)
+        return Posture(control[0], force[0], cost).rounded()
+
+    def _solver(self, problem: Problem) -> Solver:
+        kept = self._solvers.get(problem.planes is not None)
+        if kept is None or not kept.takes(problem):
+            kept = Banded(problem, BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH))
+            self._solvers[problem.planes is not None] = kept
+        return kept
+
+    def _explained(self, starts: Sequence[Array]) -> ClearEnd:
+        """Return the posture that breaks least with bodies apart, of those that the starts lead to, and what it breaks.
+
+        Nothing is told if that is too little to be in the way of every motion.
+        """
+        eased = self._least(self.problem, starts)
+        if eased is None:
+            return ClearEnd(())
+        nearest = (self._posture(eased.x, np.inf),)
+        if not any(map(_is_decisive, eased.reasons)):
+            return ClearEnd(nearest)
+        least = self._least(self.still, [eased.x])
+        return ClearEnd(nearest, (least or eased).reasons)
+
+    def _least(self, problem: Problem, starts: Sequence[Array]) -> LeastViolation | None:
+        found: list[LeastViolation] = []
+        for x in starts:
+            look = self._look(x)
+            pairs = np.flatnonzero(look.distance[0] < self.clearer.asked + WATCHED)
+            least = find_least_violation(problem.apart(self._planes(look, pairs, 0.0)), [x], self._deadline)
+            found += [least] if least else []
+        return min(found, key=lambda least: (not least.sure, least.price), default=None)
+
+
+def _is_decisive(reason: InfeasibilityReason) -> bool:
+    """Whether what is in the way at rest is in the way of every motion."""
+    if reason.unit in DECISIVE:
+        return reason.amount > DECISIVE[reason.unit]
+    return reason.share > DECISIVE_SHARE
+
+
+def _cost(posture: Posture) -> float:
+    return posture.cost
