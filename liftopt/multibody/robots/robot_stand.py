@@ -32,14 +32,13 @@ def robot_stand(T_world_base: Array, base: Array) -> tuple[Shape, ...]:
     if T_world_base[2, 2] < STEEP:
         return tuple(_plate(base))
     points = base @ T_world_base[:3, :3].T + T_world_base[:3, 3]
-    low, high, lowest = _sole(points)
-    origin = T_world_base[:2, 3]
-    if (origin < low - BEYOND).any() or (origin > high + BEYOND).any():
-        # What is lowest hangs beside it, such as an arm: it stands on what is below its middle.
-        below = points[np.linalg.norm(points[:, :2] - origin, axis=1) < BELOW]
-        low, high, lowest = _sole(below if len(below) else points)
-    if lowest <= ON_FLOOR:
+    if points[:, 2].min() <= ON_FLOOR:
         return ()
+    # What is lowest may hang beside it, as an arm does: it stands on what is below its middle.
+    below = points[np.linalg.norm(points[:, :2] - T_world_base[:2, 3], axis=1) < BELOW]
+    if len(below) and below[:, 2].min() > points[:, 2].min() + SOLE:
+        points = below
+    low, high, lowest = _sole(points)
     T_base_world = np.asarray(np.linalg.inv(T_world_base))
     return tuple(shape.seen_from(T_base_world) for shape in _pedestal((low + high) / 2.0, high - low, lowest))
 
