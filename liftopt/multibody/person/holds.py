@@ -18,8 +18,9 @@ HALF = float(np.sqrt(0.5))
 # Where the fingers of a right hand point, and where its palm looks. Under an edge or the bottom the palm is up and the
 # fingers ahead; at a corner they point in towards the middle as well. On the sides both palms look at each other, the
 # fingers ahead and down. In a handle, a bar along X, the fist hangs: palm inwards, thumb ahead; around one that is
-# higher than the elbow it comes from below, thumb behind. About the bar it turns as it likes (``Grasp.bar``). Choices of
-# this model, as a person who stands before a box would hold it; a grasp may turn from there (``Grasp.max_turn``).
+# higher than the elbow it comes from below, thumb behind. About the bar it turns as it likes (``Grasp.bar``). All are
+# choices of this model, as a person who stands before a box would hold it; a grasp may turn from there
+# (``Grasp.max_turn``).
 RIGHT_HAND: dict[Hold, tuple[Direction, Direction]] = {
     "edge": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     "bottom": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
