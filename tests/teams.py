@@ -77,9 +77,10 @@ TWO_WHOLE = SQUAT | {
 }
 
 
-def _with_arm(model: str, x: float, z: float, **more: Any) -> dict[str, Any]:
+def _with_arm(model: str, x: float, z: float, direction: str = "z", **more: Any) -> dict[str, Any]:
     """Return the lift of a person and a robot whose model is in example-robot-data."""
-    arm = {"kind": "robot", "model": model, "base": {"x": x, "z": z}, "tool": {"length": 0.1, "mass": 0.5}}
+    tool = {"length": 0.1, "mass": 0.5, "direction": direction}
+    arm = {"kind": "robot", "model": model, "base": {"x": x, "z": z}, "tool": tool}
     return {
         "schema": 2,
         "name": model,
@@ -98,8 +99,8 @@ TEAMS: dict[str, dict[str, Any]] = {
     "two_whole": TWO_WHOLE,
     "ur10": _with_arm("ur10", 1.6, 0.6),
     "panda": _with_arm("panda", 1.4, 0.6),
-    "tiago_lifting": _with_arm("tiago_lifting", 1.5, 0.0),
-    "tiago": _with_arm("tiago", 1.5, 0.0, locked={"torso_lift_joint": 0.2}),
+    "tiago_lifting": _with_arm("tiago_lifting", 1.5, 0.0, "x"),
+    "tiago": _with_arm("tiago", 1.5, 0.0, "x", locked={"torso_lift_joint": 0.2}),
 }
 # How far those with legs bend their knees at the start and at the end of a lift from the floor [deg].
 KNEES = (115.0, 15.0)

@@ -24,7 +24,8 @@ def link_poses(agent: Agent, joints: tuple[int, ...], q: Array) -> tuple[Array, 
         pin.computeJointJacobians(model, data, at)
         for i, joint in enumerate(joints):
             pose = data.oMi[joint]
-            jacobian = pin.getJointJacobian(model, data, joint, pin.LOCAL_WORLD_ALIGNED)
+            # Of one joint it is flat.
+            jacobian = pin.getJointJacobian(model, data, joint, pin.LOCAL_WORLD_ALIGNED).reshape(6, -1)
             outputs[k, i] = np.concatenate([pose.translation, pose.rotation.ravel("F")])
             slopes[k, i, :3] = jacobian[:3]
             # A turn w moves each column of the rotation by w x column.

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from liftopt.commands.meshes import add_meshes
 from liftopt.commands.terminal import printing
 
 
@@ -19,6 +20,7 @@ def add_report_parser(commands: Any) -> None:
     )
     parser.add_argument("result", metavar="RESULT", help="a result folder, or its solution.nc")
     parser.add_argument("--html", metavar="FILE", required=True, help="the page to write")
+    add_meshes(parser)
     parser.set_defaults(run=printing(report_text))
 
 
@@ -33,5 +35,5 @@ def report_text(args: argparse.Namespace) -> str:
     solution = load_result(args.result)
     from liftopt.viz.report import write_report
 
-    write_report(solution, Path(args.html))
+    write_report(solution, Path(args.html), meshes=args.meshes)
     return f"Written to {args.html}\n"

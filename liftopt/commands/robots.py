@@ -31,7 +31,12 @@ def add_robots_parser(commands: Any) -> None:
         "about it, and what is missing or wrong in its data, each with the fix; exit status 3 if it cannot lift.",
         allow_abbrev=False,
     )
-    parser.add_argument("robot", nargs="?", metavar="ROBOT", help="a name from the list, or a URDF or xacro file")
+    parser.add_argument(
+        "robot",
+        nargs="?",
+        metavar="ROBOT",
+        help="a name from the list or of robot_descriptions, or a URDF or xacro file",
+    )
     parser.add_argument("--grasp-frame", metavar="LINK", help="link that it holds with; by default one is proposed")
     parser.add_argument("--base", metavar="LINK", help="link that is bolted down (default: the root)")
     parser.add_argument(
@@ -62,9 +67,14 @@ def robots(args: argparse.Namespace) -> int:
         write(_list_json() if args.json else captured(_print_list))
         return DONE
     from liftopt.multibody.robots.catalogue import known_or_path
+    from liftopt.multibody.robots.public_description import is_public, public_description
 
-    known = known_or_path(args.robot)
-    found = _examined(known, args)
+    word, given = args.robot, dict(_pairs("--arg", args.arg))
+    if is_public(word):
+        public = public_description(word)
+        word, given = str(public.path), {**public.arguments, **given}
+    known = known_or_path(word)
+    found = _examined(known, args, given)
     status = NOT_SOLVED if found.refused else DONE
     written = _written_scenario(args, known, found) if args.scenario and status == DONE else None
     if args.json:
@@ -78,20 +88,20 @@ def robots(args: argparse.Namespace) -> int:
     return status
 
 
-def _examined(known: KnownRobot | Path, args: argparse.Namespace) -> Examination:
+def _examined(known: KnownRobot | Path, args: argparse.Namespace, given: dict[str, str]) -> Examination:
     from liftopt.multibody.robots.catalogue import examined_robot
     from liftopt.multibody.robots.examination import examined
     from liftopt.multibody.robots.read_robot import read_robot
 
     locked = {name: _number("--lock", name, value) for name, value in _pairs("--lock", args.lock)}
     if not isinstance(known, Path):
-        for option, given in (("--grasp-frame", args.grasp_frame), ("--base", args.base), ("--arg", args.arg)):
-            if given:
-                raise InputError(option, given, f"goes with a file; of {known.name} it is known")
+        for option, said in (("--grasp-frame", args.grasp_frame), ("--base", args.base), ("--arg", args.arg)):
+            if said:
+                raise InputError(option, said, f"goes with a file; of {known.name} it is known")
         if locked:
             raise InputError("--lock", args.lock, f"goes with a file; of {known.name} it is known")
         return examined_robot(known)
-    description = read_robot(known, arguments=dict(_pairs("--arg", args.arg)))
+    description = read_robot(known, arguments=given)
     return examined(description, grasp_frame=args.grasp_frame, base=args.base, locked=locked)
 
 
@@ -104,13 +114,12 @@ def _written_scenario(args: argparse.Namespace, known: KnownRobot | Path, found:
     from liftopt.search.first_scenario import first_scenario
 
     chain = found.chain
-    model = str(known.absolute()) if isinstance(known, Path) else known.name
-    entries = {"model": model, "grasp_frame": args.grasp_frame, "base_link": args.base}
-    tables: dict[str, Any] = (
-        {"locked": {name: float(value) for name, value in _pairs("--lock", args.lock)}} if args.lock else {}
-    )
-    tables |= {"arguments": dict(_pairs("--arg", args.arg))} if args.arg else {}
-    robot = {key: value for key, value in entries.items() if value} | tables
+    by_path = isinstance(known, Path) and known.name == Path(args.robot).name
+    model = str(known.absolute()) if isinstance(known, Path) and by_path else args.robot
+    entries: dict[str, Any] = {"model": model, "grasp_frame": args.grasp_frame, "base_link": args.base}
+    entries |= {"locked": {name: float(value) for name, value in _pairs("--lock", args.lock)}}
+    entries |= {"arguments": dict(_pairs("--arg", args.arg))}
+    robot = {key: value for key, value in entries.items() if value}
     with progress_line() as progress:
         made = first_scenario(robot, Path(args.scenario).stem, progress)
     head = (

@@ -6,6 +6,7 @@ import argparse
 from typing import Any
 
 from liftopt.commands.exit_status import DONE
+from liftopt.commands.meshes import add_meshes
 from liftopt.commands.terminal import write
 
 
@@ -24,6 +25,7 @@ def add_view_parser(commands: Any) -> None:
     parser.add_argument(
         "--sawyer", metavar="DIR", help="the manufacturer's sawyer_description folder: draw the robot with its meshes"
     )
+    add_meshes(parser)
     parser.add_argument("--port", type=int, default=7000, metavar="N", help="first port to try (default: %(default)s)")
     parser.add_argument("--no-browser", action="store_false", dest="browser", help="serve the page, open no browser")
     parser.set_defaults(run=view)
@@ -43,6 +45,7 @@ def view(args: argparse.Namespace) -> int:
         ghost=args.ghost,
         html=args.html,
         sawyer=args.sawyer,
+        meshes=args.meshes,
         port=args.port,
         browser=args.browser,
         progress=lambda line: write(line + "\n"),

@@ -52,18 +52,27 @@ class Solution(solution.Solution):
 
         return save(self, Path(folder))
 
-    def report(self, html: str | Path) -> None:
+    def report(self, html: str | Path, *, meshes: bool | str | Path = False) -> None:
         """Write one self-contained page with playback, plots, tables and assessment; a file of that name is replaced.
+
+        Args:
+            html: where to.
+            meshes: as ``picture`` has it.
 
         Raises:
             InputError: it cannot be written.
         """
         from liftopt.viz.report import write_report
 
-        write_report(self, Path(html))
+        write_report(self, Path(html), meshes=meshes)
 
     def picture(
-        self, file: str | Path, *, time: float | Sequence[float] | None = None, view: str = "three-quarter"
+        self,
+        file: str | Path,
+        *,
+        time: float | Sequence[float] | None = None,
+        view: str = "three-quarter",
+        meshes: bool | str | Path = False,
     ) -> None:
         """Write a picture of everybody, the object and the forces, as PNG or JPEG; a file of that name is replaced.
 
@@ -72,13 +81,16 @@ class Solution(solution.Solution):
             time: one moment or several, side by side [s]; None: start, middle and end.
             view: from where: ``"three-quarter"``, ``"side"``, ``"front"``, ``"top"``, ``"hands"``, ``"person"``,
                 ``"robot"``, or an agent's name where there are several of a kind.
+            meshes: draw robots from a file with their own meshes: True reads the URDF that the scenario names, which
+                anybody may have written of a result that was loaded; a path names that file or its folder. Robots known
+                by name are drawn with theirs anyhow.
 
         Raises:
             InputError: there is no such view or moment, or the file cannot be written.
         """
         from liftopt.viz.picture import write_picture
 
-        write_picture(self, Path(file), time, view)
+        write_picture(self, Path(file), time, view, meshes=meshes)
 
 
 def solve(scenario: Scenario, *, progress: Progress | None = None) -> Solution:

@@ -4,8 +4,8 @@
 - The floor is there for the object and for hands, whether they grasp or not; feet and pedestals stand on it.
 - Within a body, solids on one joint do not move against each other. Of two bodies next to each other along the chain
   those of a robot are exempt, and the one that stands against the first that moves; of a person's, those that are at
-  the joint between them. A person's thighs and belly meet where the hip bends: soft tissue gives way there. Two of a
-  robot with only a short way between them, which are thicker than that and overlap in every posture, are exempt too.
+  the joint between them. A person's thighs and belly meet where the hip bends: soft tissue gives way there.
+- Two solids of a robot that overlap in most of its postures are too coarse to be kept apart.
 - What stands (an obstacle, a foot, a pedestal) is checked against what stands of others too: it may be placed wrong.
 """
 
@@ -19,6 +19,7 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.coarse_pairs import coarse_pairs
 from liftopt.multibody.solids import FLOOR, Solid, solids_of, solids_of_object
 from liftopt.types import Array
 
@@ -72,7 +73,9 @@ def solid_pairs(
     pairs: list[SolidPair] = []
     bodies = [(agent, solids_of(agent)) for agent in agents]
     for agent, solids in bodies:
-        pairs += _within(agent, solids)
+        own = list(_within(agent, solids))
+        coarse = coarse_pairs(agent, [(pair.one, pair.other) for pair in own]) if agent.kind == "robot" else set()
+        pairs += [pair for pair in own if (id(pair.one), id(pair.other)) not in coarse]
     for (agent, solids), (other, others) in combinations(bodies, 2):
         pairs += _between(agent.kind, solids, other.kind, others)
     box = solids_of_object(lifted)
@@ -119,8 +122,6 @@ def _within(agent: Agent, solids: Sequence[Solid]) -> Iterator[SolidPair]:
             continue
         if neighbours and (agent.kind == "robot" or 0 in path or _at_joint(data, one, other, path)):
             continue
-        if agent.kind == "robot" and _always_overlap(model, *sorted((one, other), key=lambda solid: solid.joint)):
-            continue
         yield SolidPair(one, other, agent.kind)
 
 
@@ -133,22 +134,6 @@ def _path(up: Sequence[int], down: Sequence[int]) -> list[int]:
     """Return the joints from the end of one chain to that of another, both included; both begin at the world."""
     shared = sum(1 for a, b in zip(up, down, strict=False) if a == b)
     return [*reversed(up[shared:]), *down[shared - 1 :]]
-
-
-def _always_overlap(model: pin.Model, inner: Solid, outer: Solid) -> bool:
-    """Return whether two solids of one chain are thicker than the way between them, however its joints turn.
-
-    From the inner one the way leads to the first joint beyond it, from joint to joint, and from the last to the outer.
-    """
-    chain = model.supports[outer.joint].tolist()
-    if inner.joint not in chain:
-        return False
-    first, *others = chain[chain.index(inner.joint) + 1 :]
-    if any(model.joints[joint].shortname().startswith("JointModelP") for joint in others):
-        return False
-    steps = sum(float(np.linalg.norm(model.jointPlacements[joint].translation)) for joint in others)
-    ends = _off(inner, model.jointPlacements[first].translation) + _off(outer, np.zeros(3))
-    return ends + steps < inner.radius + outer.radius
 
 
 def _at_joint(data: pin.Data, one: Solid, other: Solid, path: Sequence[int]) -> bool:

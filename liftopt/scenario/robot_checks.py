@@ -29,7 +29,10 @@ def check_robots(scenario: ScenarioFields) -> None:
 def _check_known(name: str, robot: Robot) -> None:
     # With NumPy, which most scenarios are checked without.
     from liftopt.multibody.robots.catalogue import known_robots
+    from liftopt.multibody.robots.public_description import is_public
 
+    if is_public(robot.model):
+        return
     known = known_robots()
     if robot.model not in known:
         meant = did_you_mean(nearest(robot.model, known, 3))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 SAWYER = "sawyer"
-MODELS = 'a name that "liftopt robots" lists, or the path of a URDF or xacro file'
+MODELS = 'a name that "liftopt robots" lists, one of robot_descriptions, or the path of a URDF or xacro file'
 FILES = (".urdf", ".xacro", ".xml")
 # What another model does not take over, beside the tool: names of joints and links, and what its maker says.
 OF_MODEL = (

@@ -37,6 +37,7 @@ MOST_GRASPS = 4  # two people, both hands; an object with more compiles its smal
 # Joints of serial arms from the base on, R for one that turns and P for one that slides: those of all robots that are
 # known by name, of arms with eight joints, and of six on a column.
 ARMS = ("RRRRR", "RRRRRR", "RRRRRRR", "RRRRRRRR", "PRRRRRR", "PRRRRRRR")
+AT_ONCE = 2  # whose kernels are compiled side by side
 
 
 def ship(folder: str, every_processor: bool = False) -> bool:
@@ -70,8 +71,8 @@ def shipped_requests() -> Iterator[list[Request]]:
         yield kernel_requests(agents, held)[-1:]
         if count > 1:  # one point alone holds nothing
             yield [(object_functions, held_anywhere(Topology.of(held.model, held.grasp_frames)))]
-    for kinds in ARMS:
-        yield arm_requests(kinds)
+    for first in range(0, len(ARMS), AT_ONCE):
+        yield [request for kinds in ARMS[first : first + AT_ONCE] for request in arm_requests(kinds)]
 
 
 def arm_requests(kinds: str) -> list[Request]:

@@ -10,14 +10,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from liftopt.multibody.dh import rotation_z
+from liftopt.multibody.dh import rotation_z, translation
 from liftopt.multibody.edges import Hold
 from liftopt.multibody.person.anthropometry import link_lengths
 from liftopt.multibody.person.subject import Subject
-from liftopt.multibody.robots.sawyer_description import JOINTS, described_frames
 from liftopt.types import Array
 from liftopt.viz.digits import Digit, closed_on, distance_to_box
-from liftopt.viz.scene_gripper import gripper_digits
+from liftopt.viz.scene_gripper import FLANGE, gripper_digits
 from liftopt.viz.scene_hand import FINGERS, PALM, T_person_palm, hand_digits, palm_tilt
 
 FLAT: tuple[Hold, ...] = ("bottom", "side")  # holds of a flat hand
@@ -51,21 +50,20 @@ def held_by_hand(
 
 
 def held_by_gripper(
-    robot: str, length: float, T_base_last: Array, T_world_last: Array, T_world_object: Array, half: Array
+    robot: str, length: float, T_world_grasp: Array, T_world_object: Array, half: Array
 ) -> dict[str, Array]:
     """Return T_world_body (K, 4, 4) of a gripper and its fingers, by body; nothing for the bare flange.
 
     Args:
         robot: its name, which the bodies' begin with.
         length: from the flange to the grasp point [m].
-        T_base_last: (4, 4) the frame of the last joint at zero, in the base's.
-        T_world_last: (K, 4, 4) that frame over the lift.
+        T_world_grasp: (K, 4, 4) the frame that it holds with over the lift, z away from the flange.
         T_world_object: (K, 4, 4) of the object's centre.
         half: (3,) half sizes of the object [m].
     """
     if length <= 0.0:
         return {}
-    tool = T_world_last @ (np.linalg.inv(T_base_last) @ described_frames(np.zeros(len(JOINTS)))[-1])
+    tool = T_world_grasp @ translation(0.0, 0.0, -length - FLANGE)
     gripper = tool @ rotation_z(gripper_roll(tool, T_world_object))
     bones = closed_bones(robot, gripper_digits(length), gripper, np.asarray(np.linalg.inv(T_world_object)), half)
     return {f"{robot}_gripper": gripper, **bones}

@@ -14,6 +14,7 @@ from liftopt.multibody.trajectory import grasps_of
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.camera import in_perspective
+from liftopt.viz.own_meshes import Meshes, figures_of
 from liftopt.viz.playback import playback_at
 from liftopt.viz.scene import GHOSTLY, Cast, parts_of, path_mesh
 from liftopt.viz.scene_arrow import arrow_mesh, metres_per_newton
@@ -29,7 +30,12 @@ MARGIN = 0.06  # [m] around what is in view
 
 
 def write_picture(
-    solution: Solution, file: Path, time: float | Sequence[float] | None = None, view: str = "three-quarter"
+    solution: Solution,
+    file: Path,
+    time: float | Sequence[float] | None = None,
+    view: str = "three-quarter",
+    *,
+    meshes: Meshes = False,
 ) -> None:
     """Write ``picture_of`` a lift to a file, whose folder is made if need be.
 
@@ -40,7 +46,7 @@ def write_picture(
 
     if file.suffix.lower() not in FORMATS:
         raise InputError("file", str(file), f"must end with one of {', '.join(FORMATS)}")
-    image = picture_of(solution, time, view)
+    image = picture_of(solution, time, view, meshes=meshes)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         imsave(file, image)
@@ -53,6 +59,8 @@ def picture_of(
     time: float | Sequence[float] | None = None,
     view: str = "three-quarter",
     panel: tuple[int, int] = PANEL,
+    *,
+    meshes: Meshes = False,
 ) -> Image:
     """Return a picture (H, W, 3) of a lift: a panel for each moment, side by side, all from the same place.
 
@@ -62,6 +70,7 @@ def picture_of(
         view: a preset of the viewer: ``"three-quarter"``, ``"side"``, ``"front"``, ``"top"``, ``"hands"``,
             ``"person"``, ``"robot"``, or an agent's name where there are several of a kind.
         panel: width and height of each panel [pixels].
+        meshes: where robots' own meshes are looked for, as ``figures_of`` has it.
 
     Raises:
         InputError: there is no such view, or a moment is not within the lift; it says which and what is allowed.
@@ -69,7 +78,8 @@ def picture_of(
     moments = _moments(solution, time)
     # The whole path of every hand is shown, and the view is that of the whole lift.
     path = np.linspace(0.0, float(solution.time[-1]), PATH_POINTS)
-    cast = Cast(solution, playback_at(solution, np.concatenate([path, moments])), "/lift")
+    playback = playback_at(solution, np.concatenate([path, moments]))
+    cast = Cast(solution, playback, "/lift", figures=figures_of(solution, meshes))
     chosen = _view(cast, view)
     low, high = (np.array(corner) for corner in chosen.box)
     camera = in_perspective(chosen.side, low - MARGIN, high + MARGIN, panel)

@@ -110,7 +110,8 @@ def playback_at(solution: Solution, time: Array) -> Playback:
         placements = _placements(agent, q)
         upright = {name: list_[0] for name, list_ in _placements(agent, np.zeros((1, agent.model.nq))).items()}
         bases[agent.name] = base_of(agent)
-        moved = _Moved(track, bases[agent.name], placements, upright, T_world_object)
+        held_at = _grasp_placements(agent, placements)
+        moved = _Moved(track, bases[agent.name], placements, upright, T_world_object, held_at)
         holding, drawn = _holding(solution, moved), _drawn(solution, moved)
         if (disc := pressure_placements(track, bases[agent.name], knots, time)) is not None:
             drawn[pressure_body(agent.name)] = disc, np.eye(4)
@@ -128,13 +129,17 @@ def playback_at(solution: Solution, time: Array) -> Playback:
 
 @dataclass(frozen=True)
 class _Moved:
-    """An agent and where its joints are: T_world_joint by joint, over the lift (K, 4, 4) and at zero (4, 4)."""
+    """An agent and where its joints are: T_world_joint by joint, over the lift (K, 4, 4) and at zero (4, 4).
+
+    ``T_world_grasp`` (K, 4, 4) is the frame that its first grasp is at.
+    """
 
     agent: AgentTrajectory
     T_world_base: Array
     placements: dict[str, Array]
     upright: dict[str, Array]
     T_world_object: Array
+    T_world_grasp: Array
 
     def at_zero(self, joint: str) -> Array:
         """Return a joint at zero (4, 4), in the base's axes."""
@@ -145,9 +150,8 @@ def _holding(solution: Solution, moved: _Moved) -> dict[str, Array]:
     """Return T_world_body (K, 4, 4) of what an agent holds with, by body."""
     agent, half = moved.agent, _half(solution)
     if agent.kind == "robot":
-        length, last = robot_of(solution.scenario, agent).tool.length, list(moved.placements)[-1]
-        world = moved.placements[last]
-        return held_by_gripper(agent.name, length, moved.at_zero(last), world, moved.T_world_object, half)
+        length = robot_of(solution.scenario, agent).tool.length
+        return held_by_gripper(agent.name, length, moved.T_world_grasp, moved.T_world_object, half)
     subject, holds = subject_in(solution, agent.name), placed_grasps(solution.scenario)
     kinds = {placed.name: placed.hold for placed in holds}
     found: dict[str, Array] = {}
@@ -205,6 +209,13 @@ def _placements(agent: Agent, q: Array) -> dict[str, Array]:
     names = list(agent.model.names)[1:]
     found = joint_placements(agent.model, q, range(1, len(names) + 1))
     return {name: found[:, n] for n, name in enumerate(names)}
+
+
+def _grasp_placements(agent: Agent, placements: dict[str, Array]) -> Array:
+    """Return T_world_grasp (K, 4, 4) of the frame that an agent's first grasp is at."""
+    model = agent.model
+    frame = model.frames[model.getFrameId(agent.grasps[0].frame)]
+    return np.asarray(placements[model.names[frame.parentJoint]] @ frame.placement.homogeneous)
 
 
 def _object_placement(pose: Array) -> pin.SE3:

@@ -23,6 +23,7 @@ from liftopt.solution.checks import TOUCH
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
+from liftopt.viz.own_meshes import Meshes
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_agents import bodies_words, force_rows, means_words, reported, subject_words, team_words
 from liftopt.viz.report_clearance import clearance_rows
@@ -51,7 +52,9 @@ HEADLINES: tuple[tuple[Kind, str, str, str], ...] = (
 )
 
 
-def write_report(solution: Solution, file: Path, sections: Sequence[ReportSection] = ()) -> None:
+def write_report(
+    solution: Solution, file: Path, sections: Sequence[ReportSection] = (), *, meshes: Meshes = False
+) -> None:
     """Write the report to ``file``, with sections that others add; its folder is made if need be.
 
     Raises:
@@ -59,7 +62,7 @@ def write_report(solution: Solution, file: Path, sections: Sequence[ReportSectio
     """
     if file.is_dir():
         raise InputError("--html", str(file), "cannot be written: there is a folder of that name")
-    text = report_html(solution, sections)
+    text = report_html(solution, sections, meshes=meshes)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
@@ -67,8 +70,11 @@ def write_report(solution: Solution, file: Path, sections: Sequence[ReportSectio
         raise InputError("--html", str(file), f"cannot be written: {error.strerror or error}") from None
 
 
-def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> str:
-    """Return the report as one HTML page that needs nothing else, with sections that others add before the scenario."""
+def report_html(solution: Solution, sections: Sequence[ReportSection] = (), *, meshes: Meshes = False) -> str:
+    """Return the report as one HTML page that needs nothing else, with sections that others add before the scenario.
+
+    Robots' own ``meshes`` are looked for as ``figures_of`` has it.
+    """
     lift = Lift.of(solution)
     summary, task = summary_dict(solution), solution.scenario.task
     by_grasps = isinstance(task.start, GraspPlace) and isinstance(task.end, GraspPlace)
@@ -85,7 +91,7 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = ()) -> s
         "headlines": _headlines(solution),
         "figures": {name: {"svg": Markup(figure.svg), "caption": figure.caption} for name, figure in figures.items()},
         "sections": sections,
-        "playback": playback_page(solution),
+        "playback": playback_page(solution, meshes=meshes),
         "people": [reported(lift, agent) for agent in lift.dense.persons],
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +13,13 @@ from liftopt.assessment.who import who_is
 from liftopt.ergonomics.lift import subject_in
 from liftopt.multibody.dh import rotation_z, translation
 from liftopt.multibody.trajectory import AgentTrajectory
+from liftopt.scenario.build import agent_of
 from liftopt.scenario.obstacles import Obstacle
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
 from liftopt.viz.person_bodies import PersonBodies
 from liftopt.viz.playback import Playback
+from liftopt.viz.robot_figure import FigurePiece
 from liftopt.viz.scene_arrow import arrow_commands, arrow_values
 from liftopt.viz.scene_clearance import line_commands, line_values, nearest_at
 from liftopt.viz.scene_commands import Command, clip, place, set_object
@@ -25,10 +29,11 @@ from liftopt.viz.scene_object import object_parts
 from liftopt.viz.scene_part import GROUND, Colour, Part
 from liftopt.viz.scene_person import SHIRT, hand_parts, person_parts
 from liftopt.viz.scene_pressure import pressure_body, pressure_part
+from liftopt.viz.scene_robot import robot_parts
 from liftopt.viz.scene_sawyer import sawyer_parts
 from liftopt.viz.scene_sawyer_meshes import sawyer_mesh_parts
 from liftopt.viz.scene_shadow import shadow_commands
-from liftopt.viz.who import colour_of, robot_of
+from liftopt.viz.who import colour_of, is_sawyer, robot_of
 
 CONCRETE: Colour = (0.42, 0.48, 0.58)
 SEE_THROUGH, GHOSTLY = 0.55, 0.15  # opacity of an obstacle, and of what a preset looks through
@@ -49,6 +54,7 @@ class Cast:
         offset: (3,) where it is put in the world [m].
         ghost: whether it is drawn see-through.
         sawyer: the manufacturer's ``sawyer_description`` folder, or None for our own primitives.
+        figures: own meshes of other robots, by agent; who is not in it is drawn with the shapes of its model.
         shirt: of the first person, by which this lift is told from another; the others wear the colour of their arrows.
     """
 
@@ -59,11 +65,26 @@ class Cast:
     ghost: bool = False
     sawyer: Path | None = None
     shirt: Colour = SHIRT
+    figures: Mapping[str, Sequence[FigurePiece]] = field(default_factory=dict)
 
     @property
     def colour(self) -> Colour:
         """By which this lift is told from another: that of the shirt, or of a ghost."""
         return GHOST_COLOUR if self.ghost else self.shirt
+
+    @cached_property
+    def arms(self) -> dict[str, list[Part]]:
+        """What is drawn of each robot, without its gripper, where it stands and at zero."""
+        return {robot.name: self._arm(robot) for robot in self.solution.robots}
+
+    def _arm(self, robot: AgentTrajectory) -> list[Part]:
+        base = self.playback.bases[robot.name]
+        if not is_sawyer(self.solution.scenario, robot):
+            model = agent_of(self.solution.scenario, robot.name, self.solution.urdfs)
+            return robot_parts(model, self.figures.get(robot.name, ()))
+        if self.sawyer is None:
+            return sawyer_parts(robot.name, base)
+        return sawyer_mesh_parts(self.sawyer, robot.name, base)
 
 
 def lift_commands(cast: Cast, first: Cast | None = None) -> list[Command]:
@@ -146,10 +167,7 @@ def _figure(cast: Cast, agent: AgentTrajectory) -> list[Part]:
         figure = [part.placed(world_base) for part in figure]
         hands = (hand_parts(arm.hand, subject, arm.side) for arm in bodies.arms if arm.hand)
         return figure + [part for hand in hands for part in hand]
-    if cast.sawyer is None:
-        arm = sawyer_parts(agent.name, world_base)
-    else:
-        arm = sawyer_mesh_parts(cast.sawyer, agent.name, world_base)
+    arm = cast.arms[agent.name]
     if not who_is(agent, solution.agents).is_alone:  # on the ground each needs names of its own
         arm = [replace(part, name=f"{agent.name}_{part.name}") if part.body == GROUND else part for part in arm]
     return [*arm, *gripper_parts(agent.name, robot_of(solution.scenario, agent).tool.length)]

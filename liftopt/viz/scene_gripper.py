@@ -1,6 +1,7 @@
 """A gripper with two fingers that close on an edge, on a flange; sizes are drawn by eye.
 
-Its frame is that of the arm's last link as its manufacturer has it, turned about the tool's axis z; it opens along y.
+Its frame is behind the flange, as far as Sawyer's last link has its own, turned about the tool's axis z; it opens along
+y.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from liftopt.viz.scene_part import Colour, Part
 
 BLACK: Colour = (0.07, 0.07, 0.08)
 SILVER: Colour = (0.62, 0.63, 0.65)
+FLANGE = float(FLANGE_IN_LAST_LINK[2])  # before the frame [m]
 PALM = 0.45  # of the way from flange to grasp point: so long is the body
 BESIDE = 0.030  # of a finger's hinge from the axis [m]
 BEYOND = 0.022  # that a finger reaches past the grasp point [m]
@@ -24,7 +26,7 @@ THICK, BROAD = 0.0085, 0.016  # half axes of a finger's section [m]
 
 def gripper_digits(length: float) -> tuple[Digit, ...]:
     """Return the two fingers of a gripper that is ``length`` long from flange to grasp point [m]."""
-    palm, reach = FLANGE_IN_LAST_LINK[2] + PALM * length, (1.0 - PALM) * length
+    palm, reach = FLANGE + PALM * length, (1.0 - PALM) * length
     along, bones = np.array([0.0, 0.0, 1.0]), (0.5 * reach, 0.5 * reach + BEYOND)
     return tuple(
         Digit(
@@ -39,10 +41,9 @@ def gripper_parts(name: str, length: float) -> list[Part]:
     """Return body and fingers of the robot of that name, each in its own frame; nothing for the bare flange."""
     if length <= 0.0:
         return []
-    flange = FLANGE_IN_LAST_LINK[2]
-    palm = flange + PALM * length
-    body = [cylinder((0.0, 0.0, 0.018), (0.0, 0.0, flange + 0.08 * length), 0.038)]
-    body.append(block((0.0, 0.0, 0.5 * (flange + palm)), (0.055, 0.095, palm - flange), edge=0.012))
+    palm = FLANGE + PALM * length
+    body = [cylinder((0.0, 0.0, 0.018), (0.0, 0.0, FLANGE + 0.08 * length), 0.038)]
+    body.append(block((0.0, 0.0, 0.5 * (FLANGE + palm)), (0.055, 0.095, palm - FLANGE), edge=0.012))
     parts = [Part(f"{name}_gripper", "gripper", BLACK, merged(body))]
     for digit in gripper_digits(length):
         for j, bone in enumerate(digit.bones):

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.interrupt import interrupts
 from liftopt.types import Progress
 from liftopt.viz.viewer_server import FIRST_PORT, PageServer, opened
+
+if TYPE_CHECKING:
+    from liftopt.viz.own_meshes import Meshes
 
 
 def view(
@@ -18,6 +22,7 @@ def view(
     ghost: bool = False,
     html: str | Path | None = None,
     sawyer: str | Path | None = None,
+    meshes: Meshes = False,
     port: int = FIRST_PORT,
     browser: bool = True,
     progress: Progress = print,
@@ -30,6 +35,7 @@ def view(
         ghost: show the second one see-through in the first one's place.
         html: file to write the page to; then nothing is served.
         sawyer: the manufacturer's ``sawyer_description`` folder, for its meshes in place of our primitives.
+        meshes: where other robots' own meshes are looked for, as ``figures_of`` has it.
         port: first port to try.
         browser: open the page in the user's browser.
         progress: where to tell the user about the page.
@@ -42,7 +48,7 @@ def view(
     if not 0 <= port <= 65535:
         raise InputError("--port", port, "must be from 0 to 65535")
     with interrupts() as found:
-        page = _page(result, other, ghost, sawyer)
+        page = _page(result, other, ghost, sawyer, meshes)
         found.check()  # trimesh swallows one while it tries its imports
     if html is not None:
         _write(Path(html), page)
@@ -55,12 +61,12 @@ def view(
         server.serve_forever(poll_interval=0.2)
 
 
-def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str | Path | None) -> str:
+def _page(result: str | Path, other: str | Path | None, ghost: bool, sawyer: str | Path | None, meshes: Meshes) -> str:
     from liftopt.storage.reader import load_result
     from liftopt.viz.viewer_page import playback_page
 
     second = None if other is None else load_result(other)
-    return playback_page(load_result(result), second, ghost=ghost, sawyer=sawyer)
+    return playback_page(load_result(result), second, ghost=ghost, sawyer=sawyer, meshes=meshes)
 
 
 def _write(file: Path, page: str) -> None:

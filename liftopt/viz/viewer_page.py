@@ -19,6 +19,7 @@ from liftopt.assessment.who import hand_of, who_is
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz.meshcat_files import LICENCES, VIEWER, meshcat_text
+from liftopt.viz.own_meshes import Meshes, figures_of
 from liftopt.viz.playback import playback_of
 from liftopt.viz.scene import Cast, lift_commands, lift_tracks
 from liftopt.viz.scene_arrow import metres_per_newton
@@ -35,7 +36,12 @@ ABOVE_HEAD = 0.10  # [m]: of the name of a lift
 
 
 def playback_page(
-    solution: Solution, other: Solution | None = None, *, ghost: bool = False, sawyer: str | Path | None = None
+    solution: Solution,
+    other: Solution | None = None,
+    *,
+    ghost: bool = False,
+    sawyer: str | Path | None = None,
+    meshes: Meshes = False,
 ) -> str:
     """Return the HTML of the playback.
 
@@ -44,11 +50,12 @@ def playback_page(
         other: a second one, put beside the first on the person's left.
         ghost: draw the second one see-through in the first one's place instead.
         sawyer: the manufacturer's ``sawyer_description`` folder, for its meshes in place of our own primitives.
+        meshes: where other robots' own meshes are looked for, as ``figures_of`` has it.
 
     Raises:
-        InputError: there is no such folder.
+        InputError: there is no such folder, or as ``figures_of``.
     """
-    casts = _casts(solution, other, ghost, None if sawyer is None else Path(sawyer))
+    casts = _casts(solution, other, ghost, None if sawyer is None else Path(sawyer), meshes)
     scale = metres_per_newton(force.force for cast in casts for force in cast.playback.forces.values())
     commands = stage_commands()
     tracks: list[dict[str, Any]] = []
@@ -70,11 +77,13 @@ def playback_page(
     return _fill(data, _title(solution, other))
 
 
-def _casts(solution: Solution, other: Solution | None, ghost: bool, sawyer: Path | None) -> list[Cast]:
-    casts = [Cast(solution, playback_of(solution), "/lift", sawyer=sawyer)]
+def _casts(solution: Solution, other: Solution | None, ghost: bool, sawyer: Path | None, meshes: Meshes) -> list[Cast]:
+    figures = figures_of(solution, meshes)
+    casts = [Cast(solution, playback_of(solution), "/lift", sawyer=sawyer, figures=figures)]
     if other is not None:
         offset = (0.0, 0.0, 0.0) if ghost else (0.0, APART, 0.0)
-        casts.append(Cast(other, playback_of(other), "/other", offset, ghost, sawyer, SECOND_SHIRT))
+        figures = figures_of(other, meshes)
+        casts.append(Cast(other, playback_of(other), "/other", offset, ghost, sawyer, SECOND_SHIRT, figures))
     return casts
 
 

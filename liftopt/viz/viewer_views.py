@@ -13,11 +13,13 @@ from liftopt.ergonomics.limbs import has_legs
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.types import Array
 from liftopt.viz.scene import Cast, obstacle_part
-from liftopt.viz.who import lead_of
+from liftopt.viz.scene_part import GROUND
+from liftopt.viz.who import is_sawyer, lead_of
 
 Box = list[list[float]]
 # Around joints: what of a person, a robot and the hands is in view [m].
 BODY, ROBOT, HANDS = 0.25, 0.05, 0.18
+LINK = 0.1  # around the joints of a robot from outside [m]
 NEARBY = 0.5  # of an obstacle, so much around everybody is in view [m]
 SEAT = 0.14  # around the hips of one whose legs bend [m]
 # A robot's pedestal ahead of its base, behind it and to its sides, and its head above it [m].
@@ -108,10 +110,24 @@ def agents_in(casts: Sequence[Cast]) -> tuple[AgentTrajectory, ...]:
 
 def head_of(cast: Cast, agent: AgentTrajectory) -> Array:
     """Return the top of an agent's head (3,), in the world, as it stands upright [m]."""
-    person = agent.kind == "person"
-    up = subject_in(cast.solution, agent.name).stature if person else HEAD
-    head = cast.playback.bases[agent.name] @ (0.0, 0.0, up, 1.0)
+    base = cast.playback.bases[agent.name]
+    if agent.kind == "robot" and not is_sawyer(cast.solution.scenario, agent):
+        return np.array([*base[:2, 3], standing_points(cast, agent)[:, 2].max()]) + cast.offset
+    up = subject_in(cast.solution, agent.name).stature if agent.kind == "person" else HEAD
+    head = base @ (0.0, 0.0, up, 1.0)
     return np.asarray(head[:3] + cast.offset)
+
+
+def standing_points(cast: Cast, agent: AgentTrajectory) -> Array:
+    """Return corners (2, 3) around what of a robot from outside does not move, and its joints over the lift [m].
+
+    They are in the world, without the offset of the lift.
+    """
+    still = [part.mesh.vertices for part in cast.arms[agent.name] if part.body == GROUND]
+    moving = [cast.playback.bodies[name].position for name in cast.playback.joints[agent.name]]
+    base = cast.playback.bases[agent.name][None, :3, 3]
+    points = np.vstack([base, *still, *moving])
+    return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 def _clear(casts: Sequence[Cast], agent: AgentTrajectory, side: list[float]) -> list[float]:
@@ -138,6 +154,9 @@ def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
             continue
         world_base, top = playback.bases[agent.name], float((head_of(cast, agent) - cast.offset)[2])
         ahead, behind, aside = (BODY, BODY, BODY) if agent.kind == "person" else (AHEAD, BEHIND, ASIDE)
+        if agent.kind == "robot" and not is_sawyer(cast.solution.scenario, agent):
+            points += list(standing_points(cast, agent) + cast.offset)
+            ahead = behind = aside = top = 0.0
         for x in (-behind, ahead):
             for y in (-aside, aside):
                 points += [(world_base @ (x, y, 0.0, 1.0))[:3] * (1.0, 1.0, 0.0) + cast.offset]
@@ -148,7 +167,7 @@ def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
     if agent.kind == "person":
         room = np.array([SEAT, SEAT, 0.0]) if has_legs(agent) else np.zeros(3)
     else:
-        room = np.full(3, ROBOT)
+        room = np.full(3, ROBOT if _is_sawyer_in(casts, agent) else LINK)
     return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
 
 
@@ -182,3 +201,7 @@ def _from(casts: Sequence[Cast], agent: AgentTrajectory, direction: tuple[float,
     cast = next(cast for cast in casts if agent.name in cast.playback.bases)
     side: list[float] = (cast.playback.bases[agent.name][:3, :3] @ direction).tolist()
     return side
+
+
+def _is_sawyer_in(casts: Sequence[Cast], agent: AgentTrajectory) -> bool:
+    return all(is_sawyer(cast.solution.scenario, agent) for cast in casts if agent.name in cast.playback.bases)

@@ -8,6 +8,7 @@ from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import stand_of
 from liftopt.scenario.robot import Robot
+from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.viz.scene_part import Colour
 
 # Of arrows and paths, in the order of the agents: after Okabe & Ito (2008), told apart with any common colour vision.
@@ -38,3 +39,8 @@ def robot_of(scenario: Scenario, robot: AgentTrajectory) -> Robot:
     who = scenario.agents[robot.name]
     assert isinstance(who, Robot)
     return who
+
+
+def is_sawyer(scenario: Scenario, robot: AgentTrajectory) -> bool:
+    """Return whether a robot is a Sawyer, which is drawn without any file."""
+    return robot_of(scenario, robot).model == SAWYER

@@ -15,7 +15,7 @@ from liftopt.collocation.pose_kernels import PoseTopology, pose_functions
 from liftopt.collocation.separating_planes import pose_parts
 from liftopt.multibody.agent import Agent, LiftedObject
 
-ARMS = ("RRRRRR", "PRRPR", "PP", "RPP")
+ARMS = ("RRRRRR", "PRRPR", "P", "RPP")
 
 
 def arm(kinds: str, seed: int = 0) -> pin.Model:

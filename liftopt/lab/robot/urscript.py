@@ -2,8 +2,10 @@
 
 ``servoj`` takes a target every period and follows it for that long. Its parameters and their ranges are the maker's
 (universal-robots.com, articles, "ServoJ command": t 0.008 s for CB3 and 0.002 s for e-Series, lookahead_time 0.03 to
-0.2 s, gain 100 to 2000). A program of ``movej`` with blends would keep the path and lose the time law, which the person
-follows. Positions are the URDF's: the maker's ROS drivers hand the controller's own over unchanged.
+0.2 s, gain 100 to 2000). All else that is called here, and how, is what the maker's driver itself runs on the arm
+(Universal_Robots_Client_Library, resources/external_control.urscript). A program of ``movej`` with blends would keep
+the path and lose the time law, which the person follows. Positions are the URDF's: the maker's ROS drivers hand the
+controller's own over unchanged.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from liftopt.multibody.robots.description import RobotDescription
 from liftopt.multibody.robots.examination import Examination, examined
 from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.multibody.robots.known_robot import KnownRobot
+from liftopt.multibody.robots.public_description import is_public, public_description
 from liftopt.multibody.robots.read_robot import NOTHING, read_robot
 
 
@@ -61,7 +62,7 @@ def chosen_robot(
     """Read a robot; what is not given is as it is known.
 
     Args:
-        model: a known name, or the path of a URDF or xacro file.
+        model: a known name, that of a public description (``iiwa14_description``), or the path of a URDF or xacro file.
         arguments: of a xacro file.
         grasp_frame: name of a link.
         base_link: name of a link.
@@ -72,6 +73,9 @@ def chosen_robot(
     Raises:
         InputError: there is no such robot, or it cannot be read.
     """
+    if is_public(model):
+        public = public_description(model)
+        model, arguments = str(public.path), {**public.arguments, **arguments}
     known = known_or_path(model)
     if isinstance(known, Path):
         description = read_robot(known, arguments=arguments)

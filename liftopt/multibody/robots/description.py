@@ -5,24 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 from liftopt.errors import InputError
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.multibody.dh import BodyInertia
+from liftopt.multibody.robots.robot_shape import MeshFile, RobotShape
 from liftopt.types import Array
 
 ONE_AXIS = ("revolute", "continuous", "prismatic")
 LARGEST_NUMBER = 1e6  # in SI units: no robot has a larger one, and readers of results take none
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
-
-
-@dataclass(frozen=True)
-class MeshFile:
-    """A mesh that a link is drawn with: its address as written, and the file, or None where none was found."""
-
-    address: str
-    path: Path | None
 
 
 @dataclass(frozen=True)
@@ -32,12 +24,19 @@ class RobotLink:
     Attributes:
         name: its own name.
         body: mass properties in the link's frame, zero where the link has none; what is missing of them is NaN.
-        meshes: that it is drawn with.
+        visuals: what it is drawn with.
+        collisions: what it collides with.
     """
 
     name: str
     body: BodyInertia
-    meshes: tuple[MeshFile, ...] = ()
+    visuals: tuple[RobotShape, ...] = ()
+    collisions: tuple[RobotShape, ...] = ()
+
+    @property
+    def meshes(self) -> tuple[MeshFile, ...]:
+        """The meshes that it is drawn with."""
+        return tuple(shape.mesh for shape in self.visuals if shape.mesh is not None)
 
 
 @dataclass(frozen=True)

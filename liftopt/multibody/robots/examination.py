@@ -15,6 +15,7 @@ from liftopt.multibody.robots.given_limits import GivenLimits, with_limits
 from liftopt.multibody.robots.grasp_frames import grasp_candidates, rivals
 from liftopt.multibody.robots.limit_findings import limit_findings
 from liftopt.multibody.robots.mass_findings import mass_findings
+from liftopt.multibody.robots.solid_findings import solid_findings
 from liftopt.multibody.robots.weight_findings import weight_findings
 
 AMBIGUOUS = "grasp.ambiguous"  # which of several hands it holds with is for the user to say
@@ -98,6 +99,7 @@ def examined(
         *limit_findings(chain),
         *chain_findings(chain),
         *mesh_findings(description),
+        *solid_findings(chain),
     ]
     if not any(one.severity == "refused" for one in found):
         found.extend(weight_findings(chain))

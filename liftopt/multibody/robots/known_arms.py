@@ -96,7 +96,7 @@ def known_arms() -> Iterator[KnownRobot]:
                          payload_source=STASSE_2017)  # fmt: skip
     trunk = {"torso_pitch": 0.0, "torso_roll": 0.0, "torso_yaw": 0.0}
     yield from _two_arms("icub", "iCub", IIT, "icub_description/robots/icub.urdf", "base_link", "{s}_gripper",
-                         locked=trunk, front_deg=180.0)  # fmt: skip
+                         locked=trunk, front_deg=180.0, y_up=True)  # fmt: skip
     yield from _two_arms("pr2", "PR2", "Willow Garage", "pr2_description/urdf/pr2.urdf", "base_footprint",
                          "{s}_gripper_tool_frame", locked={"torso_lift_joint": 0.0115}, payload=1.8,
                          payload_source=WILLOW_GARAGE, springs=PR2_SPRINGS)  # fmt: skip

@@ -30,6 +30,7 @@ class KnownRobot:
         front_deg: where its front is, about z from x of its base [deg].
         hand: mass of a hand that its URDF has and that counts towards the payload [kg].
         springs: what bears part of its weight beside its motors, in words; its torques are smaller than computed.
+        y_up: whether its meshes are meant to be turned as they state, see ``read_robot``.
         own_urdf: writes the URDF of one that liftopt has itself.
     """
 
@@ -46,6 +47,7 @@ class KnownRobot:
     front_deg: float = 0.0
     hand: float = 0.0
     springs: str = ""
+    y_up: bool = False
     own_urdf: Callable[[], str] | None = None
 
     @property
@@ -70,4 +72,4 @@ class KnownRobot:
             return read_robot(self.own_urdf())
         if self.path is None:
             raise InputError(self.name, NO_VALUE, f"{PACKAGE} has this robot and is not installed: {INSTALL}")
-        return read_robot(self.path)
+        return read_robot(self.path, y_up=self.y_up)

@@ -15,9 +15,9 @@ import numpy as np
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.bounded_read import read_regular
 from liftopt.multibody.dh import BodyInertia
-from liftopt.multibody.robots.description import MeshFile, Mimic, RobotDescription, RobotJoint, RobotLink
-from liftopt.multibody.robots.package_files import file_of
-from liftopt.multibody.robots.urdf_shape import LARGEST, checked_shape
+from liftopt.multibody.robots.description import Mimic, RobotDescription, RobotJoint, RobotLink
+from liftopt.multibody.robots.robot_shape import shapes_of
+from liftopt.multibody.robots.urdf_shape import LARGEST, WITHOUT_AXIS, checked_shape
 from liftopt.multibody.robots.xacro_text import INSTALL, expanded
 from liftopt.types import Array
 
@@ -31,23 +31,27 @@ NEEDED = {
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
-def read_robot(source: str | Path, *, arguments: Mapping[str, str] = NOTHING) -> RobotDescription:
+def read_robot(
+    source: str | Path, *, arguments: Mapping[str, str] = NOTHING, y_up: bool = False, expand: bool = True
+) -> RobotDescription:
     """Return what a URDF or xacro file, or the text of a URDF, describes.
 
     Args:
         source: path of the file (xacro where its name ends so, or where it uses xacro), or the text itself.
         arguments: values of the ``xacro:arg`` of a xacro file.
+        expand: expand a file that uses xacro, which evaluates expressions; False takes it as a URDF.
+        y_up: turn meshes that state that their y axis is up; as robots' programs do, that is left out else.
 
     Raises:
         InputError: the file cannot be read, is no URDF, or a package that reads it is not installed.
     """
     if isinstance(source, str) and (source.lstrip().startswith("<") or "\n" in source):
-        return _described(source, TEXT, None)
+        return _described(source, TEXT, None, y_up)
     path = Path(source)
     text = _text(path)
-    if path.suffix == ".xacro" or ("xmlns:xacro" in text and "<xacro:" in text):
+    if expand and (path.suffix == ".xacro" or ("xmlns:xacro" in text and "<xacro:" in text)):
         text = expanded(path, arguments)
-    return _described(text, str(path), path)
+    return _described(text, str(path), path, y_up)
 
 
 def _text(path: Path) -> str:
@@ -61,14 +65,19 @@ def _text(path: Path) -> str:
         return content.decode("latin-1")
 
 
-def _described(text: str, source: str, path: Path | None) -> RobotDescription:
+def _described(text: str, source: str, path: Path | None, y_up: bool) -> RobotDescription:
     tree = checked_shape(text, source)
     robot = _parsed(tree, source)
     elements = {str(link.get("name")): link for link in tree.findall("link")}
+    materials = {
+        str(material.get("name")): colour.get("rgba", "")
+        for material in tree.iter("material")
+        if (colour := material.find("color")) is not None
+    }
     return RobotDescription(
         name=robot.name,
         source=source,
-        links=tuple(_link(link, elements[link.name], path) for link in robot.links),
+        links=tuple(_link(link, elements[link.name], materials, path, y_up) for link in robot.links),
         joints=tuple(_joint(joint, source) for joint in robot.joints),
     )
 
@@ -89,15 +98,18 @@ def _parsed(tree: Element, source: str) -> Any:
 def _needed(element: Element) -> Element:
     """Return an element without what it holds that is not in ``NEEDED``."""
     copy = Element(element.tag, element.attrib)
-    copy.extend([_needed(inner) for inner in element if inner.tag in NEEDED.get(element.tag, ())])
+    without = ("axis",) if element.get("type") in WITHOUT_AXIS else ()
+    copy.extend(
+        [_needed(inner) for inner in element if inner.tag in NEEDED.get(element.tag, ()) and inner.tag not in without]
+    )
     return copy
 
 
-def _link(link: Any, element: Element, path: Path | None) -> RobotLink:
-    addresses = [str(mesh.get("filename")) for mesh in element.iterfind("visual/geometry/mesh")]
-    return RobotLink(
-        link.name, _body(link.inertial, element), tuple(MeshFile(name, file_of(name, path)) for name in addresses)
+def _link(link: Any, element: Element, materials: Mapping[str, str], path: Path | None, y_up: bool) -> RobotLink:
+    visuals, collisions = (
+        tuple(shapes_of(element, kind, materials, path, y_up=y_up)) for kind in ("visual", "collision")
     )
+    return RobotLink(link.name, _body(link.inertial, element), visuals, collisions)
 
 
 def _body(inertial: Any, element: Element) -> BodyInertia:

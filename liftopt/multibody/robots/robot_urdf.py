@@ -1,4 +1,4 @@
-"""The URDF of a robot's chain as liftopt writes it: plain shapes, bodies and joints, each name with the agent's.
+"""The URDF of a robot's chain as liftopt writes it: solids, bodies and joints, each name with the agent's.
 
 A joint of the chain is ``<agent>_<its own name>``, and q is its own: forward kinematics, mass matrix and gravity are
 those of the URDF that was read. What does not move is one body with what carries it.
@@ -7,25 +7,24 @@ those of the URDF that was read. What does not move is one body with what carrie
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 import numpy as np
 import pinocchio as pin
 
 from liftopt.errors import InputError
 from liftopt.multibody.dh import BodyInertia
+from liftopt.multibody.robots.carried_links import BASE
 from liftopt.multibody.robots.chain import ChainLink, RobotChain
 from liftopt.multibody.robots.description import LARGEST_NUMBER
 from liftopt.multibody.robots.mass_findings import ROUNDING, principal_moments
+from liftopt.multibody.robots.robot_solids import robot_solids
+from liftopt.multibody.robots.robot_stand import robot_stand
 from liftopt.multibody.robots.sawyer_shapes import tool_shapes
 from liftopt.multibody.robots.tool import UNTURNED, along, tool_body
-from liftopt.multibody.shapes import Capsule, Colour, Shape
 from liftopt.multibody.urdf import FixedLink, JointBounds, MovingLink, tree_robot, urdf_text
 from liftopt.types import Array
 
-GREY = Colour("robot_grey", (0.30, 0.31, 0.33, 1.0))
-# Radius of the capsules along the links: a share of the reach, within what arms have [m].
-RADIUS_SHARE, THINNEST, THICKEST = 0.05, 0.02, 0.06
 UP = np.array([0.0, 0.0, 1.0])
 LONGEST_NAME = 90
 
@@ -57,24 +56,22 @@ def robot_urdf(
     joints = _named(name, [joint.name for joint in chain.joints], (), chain)
     taken = (*joints, f"{name}_grasp", f"{name}_tool", "world")
     base, *links = _named(name, [chain.base, *(link.joint.child for link in chain.links)], taken, chain)
-    turns = [_turned(link) for link in chain.links]
-    radius = float(np.clip(RADIUS_SHARE * chain.reach, THINNEST, THICKEST))
+    turns = [turned(link) for link in chain.links]
+    solids = robot_solids(chain)
     moving, parent, before = [], base, np.eye(4)
-    # What each link carries next, in its frame: the next link, at last the grasp frame.
-    ends = [*(link.placement for link in chain.links[1:]), chain.T_last_grasp]
-    bounded = zip(chain.links, chain.ranges, turns, joints, links, ends, strict=True)
-    for link, ends_of_range, turn, joint, own, end in bounded:
+    bounded = zip(chain.links, chain.ranges, turns, joints, links, strict=True)
+    for number, (link, ends_of_range, turn, joint, own) in enumerate(bounded):
         back = turn.T
         bounds = JointBounds(
             ends_of_range.lower, ends_of_range.upper, float(link.joint.effort or 0.0), float(link.joint.velocity or 0.0)
         )
         body = link.body.transformed(back[:3, :3], np.zeros(3))
-        shapes = tuple(_tube(_plain(link.joint.child), (back @ end)[:3, 3], radius))
+        shapes = tuple(shape.seen_from(back) for shape in solids.shapes[number])
         kind = "prismatic" if link.joint.kind == "prismatic" else "revolute"
         placement = before @ link.placement @ turn
         moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, shapes))  # type: ignore[arg-type]
         parent, before = own, back
-    stand = tuple(_tube("stand", chain.links[0].placement[:3, 3], radius))
+    stand = (*solids.shapes[BASE], *robot_stand(T_world_base, solids.base))
     flange = before @ chain.T_last_grasp @ along(tool_direction, tool_turn)
     fixed = [FixedLink(base, "world", T_world_base, _sound(chain.base_body), stand)]
     if tool_length or tool_mass:
@@ -121,14 +118,8 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", name)[:LONGEST_NAME]
 
 
-def _turned(link: ChainLink) -> Array:
+def turned(link: ChainLink) -> Array:
     """Return T_child_link (4, 4) of the frame whose z axis is the joint's axis: liftopt's joints turn about z."""
     turn = np.eye(4)
     turn[:3, :3] = pin.Quaternion.FromTwoVectors(UP, link.joint.axis).matrix()
     return turn
-
-
-def _tube(name: str, end: Array, radius: float) -> Iterator[Shape]:
-    """Give a capsule from a link's origin to what it carries, if that is apart."""
-    if np.linalg.norm(end) > radius / 2.0:
-        yield Capsule(name, GREY, np.zeros(3), end, radius)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,16 @@ def arm_lift(team_solution: Callable[[str], Any]) -> Callable[[str], Solution]:
     if share_folder() is None:
         pytest.skip("example-robot-data is in the extra 'robots'")
     return lambda name: team_solution(name).solution
+
+
+@pytest.fixture(scope="session")
+def ur_controller() -> Any:
+    """Return the module that runs URScript."""
+    spec = spec_from_file_location("ur_controller", Path(__file__).with_name("ur_controller.py"))
+    assert spec is not None and spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture(scope="session")

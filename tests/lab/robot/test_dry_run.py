@@ -268,7 +268,8 @@ def test_a_whole_person_with_two_hands_is_dry_run_too(solved, tmp_path, capsys):
         jacobian = pin.computeFrameJacobian(model.model, data, robot.q[k], frame, pin.LOCAL_WORLD_ALIGNED)
         torque = pin.computeGeneralizedGravity(model.model, data, robot.q[k]) - jacobian.T @ pull
         np.testing.assert_allclose(plan.torque[row], JOINT_SIGNS * torque[robot.moving], atol=1e-6)
-    assert main(["dry-run", str(result.folder), "--trials", "1", "--out", str(tmp_path / "dry")]) == 0
+    command = ["dry-run", str(result.folder), "--trials", "1", "--goal-time", "0.2", "--out", str(tmp_path / "dry")]
+    assert main(command) == 0
     printed = capsys.readouterr().out
     assert "followed to the end" in printed
     assert "The middle of the person's hands is led off" in printed

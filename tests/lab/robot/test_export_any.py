@@ -6,8 +6,8 @@ import csv
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -28,7 +28,7 @@ from liftopt.solution.interpolation import between_knots
 from liftopt.solution.solution import Solution
 
 ROBOTS = ("ur10", "panda", "tiago", "tiago_lifting")
-TOOL = 0.1  # [m]
+TOOL = {"ur10": (0.0, 0.0, 0.1), "panda": (0.0, 0.0, 0.1), "tiago": (0.1, 0.0, 0.0), "tiago_lifting": (0.1, 0.0, 0.0)}
 HELD = {"tiago": {"torso_lift_joint": 0.2}}
 Lifts = Callable[[str], Solution]
 Folders = Callable[[str], Path]
@@ -57,7 +57,7 @@ def test_the_robots_own_urdf_puts_the_hand_where_the_solution_has_it(arm_lift: L
         for joint, value in HELD.get(name, {}).items():
             q[model.joints[model.getJointId(joint)].idx_q] = value
         pin.framesForwardKinematics(model, data, q)
-        found = world * data.oMf[base].actInv(data.oMf[frame]).act(np.array([0.0, 0.0, TOOL]))
+        found = world * data.oMf[base].actInv(data.oMf[frame]).act(np.array(TOOL[name]))
         np.testing.assert_allclose(found, hand, rtol=0, atol=1e-6)
 
 
@@ -126,17 +126,13 @@ def test_locked_joints_are_written_where_they_are_asked_for(
 
 @pytest.mark.parametrize("rate", ["125", "500"])
 def test_the_program_of_a_universal_robot_follows_the_solution(
-    arm_lift: Lifts, arm_folder: Folders, tmp_path: Path, rate: str
+    arm_lift: Lifts, arm_folder: Folders, ur_controller: Any, tmp_path: Path, rate: str
 ) -> None:
-    spec = spec_from_file_location("ur_controller", Path(__file__).with_name("ur_controller.py"))
-    assert spec is not None and spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
     words = ["--format", "urscript", "--servo-rate", rate]
     assert main(["export", str(arm_folder("ur10")), "--out", str(tmp_path / "out"), *words]) == DONE
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["trajectory.script"]
     fine = joint_trajectory(arm_lift("ur10"), 1000.0)
-    arm = module.Controller(fine.position[0])
+    arm = ur_controller.Controller(fine.position[0])
     arm.run((tmp_path / "out" / "trajectory.script").read_text("utf-8"))
     step = 1000 // int(rate)
     targets = np.array([one["q"] for one in arm.of("servoj")])

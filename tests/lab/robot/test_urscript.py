@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,15 +11,6 @@ from liftopt.errors import InputError
 from liftopt.lab.robot.joint_map import JointMap
 from liftopt.lab.robot.joint_trajectory import JointTrajectory
 from liftopt.lab.robot.urscript import JOINTS, MOST, PERIODS, is_universal, servo_times, urscript
-
-
-@pytest.fixture(scope="module")
-def controller() -> Any:
-    spec = spec_from_file_location("ur_controller", Path(__file__).with_name("ur_controller.py"))
-    assert spec is not None and spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def joints(*names: str) -> JointMap:
@@ -39,10 +28,10 @@ def motion(period: float, duration: float = 1.001) -> JointTrajectory:
 
 
 @pytest.mark.parametrize("rate", ["125", "500"])
-def test_the_arm_goes_to_the_start_slowly_follows_every_target_and_stops(controller: Any, rate: str) -> None:
+def test_the_arm_goes_to_the_start_slowly_follows_every_target_and_stops(ur_controller: Any, rate: str) -> None:
     period = PERIODS[rate]
     trajectory = motion(period)
-    arm = controller.Controller(trajectory.position[0] + 0.3)
+    arm = ur_controller.Controller(trajectory.position[0] + 0.3)
     arm.run(urscript(trajectory, period, 'a "lift"\nhalt'))
     assert [name for name, _ in arm.told][:4] == ["popup", "movej", "popup", "servoj"]
     assert all(asked["blocking"] and "\n" not in asked["title"] for asked in arm.of("popup"))
@@ -62,15 +51,15 @@ def test_the_arm_goes_to_the_start_slowly_follows_every_target_and_stops(control
 
 
 @pytest.mark.parametrize("joint", range(6))
-def test_an_arm_far_from_the_start_is_not_moved(controller: Any, joint: int) -> None:
+def test_an_arm_far_from_the_start_is_not_moved(ur_controller: Any, joint: int) -> None:
     trajectory = motion(0.008)
-    arm = controller.Controller(trajectory.position[0] - 0.6 * np.eye(6)[joint])
-    with pytest.raises(controller.Halted):
+    arm = ur_controller.Controller(trajectory.position[0] - 0.6 * np.eye(6)[joint])
+    with pytest.raises(ur_controller.Halted):
         arm.run(urscript(trajectory, 0.008, "lift"))
     assert [name for name, _ in arm.told] == ["popup"] and arm.told[0][1]["error"]
 
 
-def test_a_program_that_is_none_is_noticed(controller: Any) -> None:
+def test_a_program_that_is_none_is_noticed(ur_controller: Any) -> None:
     """The check must be able to fail: a block without end, an unknown function, an argument that is none."""
     program = urscript(motion(0.008), 0.008, "lift")
     for sound, faulty in (
@@ -81,7 +70,7 @@ def test_a_program_that_is_none_is_noticed(controller: Any) -> None:
     ):
         assert sound in program
         with pytest.raises((AssertionError, NameError, TypeError, SyntaxError)):
-            controller.Controller(motion(0.008).position[0]).run(program.replace(sound, faulty, 1))
+            ur_controller.Controller(motion(0.008).position[0]).run(program.replace(sound, faulty, 1))
 
 
 def test_length_and_reach_are_bounded() -> None:

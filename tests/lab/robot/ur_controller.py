@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-# Of the URScript manual, version 5.11: what is called, and with what.
+# Of the maker's script manual: what may be called, and with what.
 MANUAL = {
     "get_actual_joint_positions": "lambda: 0",
     "norm": "lambda a: 0",

@@ -17,11 +17,12 @@ from liftopt.multibody.solids import solids_of
 
 NOT_INSTALLED = "example-robot-data is not installed (it is in 'test')"
 POSTURES = 40
+SCATTER = 0.25  # three standard deviations of the share of 40 postures
 
 
 @pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
 @pytest.mark.parametrize("name", ["ur5", "panda", "baxter_left", "tiago_lifting", "z1"])
-def test_only_parts_that_overlap_in_every_posture_may(name, table, coal_distance, rng):
+def test_only_parts_that_overlap_in_most_postures_may(name, table, coal_distance, rng):
     known = known_robots()[name]
     agent = robot_agent(
         known.description(), name="robot", T_world_base=np.eye(4), base=known.base, grasp_frame=known.grasp_frame,
@@ -30,15 +31,15 @@ def test_only_parts_that_overlap_in_every_posture_may(name, table, coal_distance
     kept = {pair.told for pair in solid_pairs((agent,), table) if pair.within_body}
     solids = solids_of(agent)
     bearing = sorted({solid.joint for solid in solids})
-    farthest = dict.fromkeys(combinations(range(len(solids)), 2), -np.inf)
+    overlaps = dict.fromkeys(combinations(range(len(solids)), 2), 0)
     for q in rng.uniform(agent.limits.q_lower, agent.limits.q_upper, (POSTURES, len(agent.posture))):
         at = coal_distance.joint_placements(agent, q)
-        for i, j in farthest:
+        for i, j in overlaps:
             one, other = solids[i], solids[j]
-            apart = coal_distance.distance(one, at[one.joint], other, at[other.joint])
-            farthest[i, j] = max(farthest[i, j], apart)
-    for (i, j), apart in farthest.items():
+            overlaps[i, j] += coal_distance.distance(one, at[one.joint], other, at[other.joint]) <= 0.0
+    for (i, j), count in overlaps.items():
+        share = count / POSTURES  # of other postures than those that decide
         if f"{solids[i].told} and {solids[j].told}" in kept:
-            assert apart > 0.0
+            assert share < 0.5 + SCATTER
         elif abs(bearing.index(solids[i].joint) - bearing.index(solids[j].joint)) > 1:
-            assert apart <= 0.0
+            assert share > 0.5 - SCATTER

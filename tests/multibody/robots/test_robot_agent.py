@@ -107,7 +107,7 @@ def test_a_tool_extends_the_grasp_frame_along_its_z_axis(arm):
 def test_shapes_become_solids_whose_names_can_be_read(arm):
     agent = robot_agent(read_robot(arm()), name="ann", T_world_base=np.eye(4), tool_length=0.2)
     told = [solid.told for solid in solids_of(agent)]
-    assert told == ["l1 of ann", "l2 of ann", "l3 of ann", "l4 of ann", "stand of ann", "gripper of ann"]
+    assert told == ["l1 of ann", "l2 of ann", "l3 of ann", "l4 of ann", "base of ann", "gripper of ann"]
 
 
 def test_names_never_clash_between_two_robots_or_a_link_and_a_joint(arm):
