@@ -17,6 +17,8 @@ from liftopt.solution.finding import CAUTION, INFO, ROBOT, Finding
 
 GIVEN = "the scenario"
 SEVERITIES = {"refused": CAUTION, "warned": CAUTION, "assumed": INFO}
+# Of parts that do not move and of pictures: no result rests on them.
+HARMLESS = ("mass.base", "meshes.missing")
 TITLES = {CAUTION: "data to check: {where}", INFO: "assumed: {where}"}
 
 
@@ -70,7 +72,7 @@ def data_findings(robot: AgentTrajectory, who: Who, data: RobotData) -> Iterator
             robot.name,
         )
     for first, *others in alike(robot.remarks):
-        severity = SEVERITIES[first.severity]
+        severity = INFO if first.code in HARMLESS else SEVERITIES[first.severity]
         also = f" (and {', '.join(other.where for other in others)})" if others else ""
         where = first.where + (f" and {len(others)} more" if others else "")
         yield Finding(

@@ -28,6 +28,7 @@ class Adjustable:
         against: constraints it may help with.
         most: largest change tried, in steps.
         relative: ``usual`` is a share of the value.
+        unit: of the values, where they are not relative.
     """
 
     keys: tuple[str, ...]
@@ -38,6 +39,7 @@ class Adjustable:
     against: frozenset[str]
     most: int = 64
     relative: bool = False
+    unit: str = "m"
 
     @property
     def signs(self) -> tuple[int, ...]:
@@ -67,12 +69,12 @@ class Adjustable:
             if reason.static and self.keys == ("duration",):
                 continue
             if not self.relative:
-                change = reason.amount if reason.unit == "m" else 0.0
+                change = reason.amount if reason.unit == self.unit else 0.0
             elif self.keys == ("object.mass",):
                 change = was * reason.share / (1.0 + reason.share)
             else:
                 change = was * reason.share
-            most = max(most, change, self.step if self.relative else LEAST_MOVE)
+            most = max(most, change, LEAST_MOVE if self.unit == "m" and not self.relative else self.step)
         return int(np.ceil(most / self.step - 1e-9))
 
     def _elsewhere(self, when: float) -> bool:
@@ -84,6 +86,7 @@ _REACH, _MOTION = (
     frozenset({"grasp_closure", "workspace", "clearance"}),
     frozenset({"grasp_closure", "workspace", "clearance", "torque", "velocity"}),
 )
+_TURN = frozenset({"grasp_turn"})
 _STRENGTH = frozenset({"torque", "grasp_force"})
 _POSTURE = _REACH | {"torque"}
 _CLEARANCE = frozenset({"clearance"})
@@ -116,6 +119,10 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
             found.append(Adjustable((f"{name}.{agent.height_key}",), 0.01, 0.1, lower, higher, _POSTURE))
     shallower, deeper = "object at most {value:.2f} m deep", "object at least {value:.2f} m deep"
     found.append(Adjustable(("object.depth",), 0.01, 0.1, shallower, deeper, _POSTURE))
+    for name, agent in scenario.agents.items():
+        if agent.grasp == "wrench":
+            more = f"{name} may turn by up to {{value:.0f}} deg on the object"
+            found.append(Adjustable((f"{name}.grasp_turn_deg",), 1.0, 10.0, "", more, _TURN, 150, unit="deg"))
     for key, size in (("object.width", "wide"), ("object.height", "high")):
         found.append(Adjustable((key,), 0.01, 0.1, f"object at most {{value:.2f}} m {size}", "", _CLEARANCE))
     return found

@@ -15,6 +15,7 @@ from liftopt.multibody.joint_units import units_of
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.search.inverse_kinematics import InverseKinematics
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
+from liftopt.search.reach_words import how_far_it_reaches
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 from liftopt.types import Array
 
@@ -101,6 +102,7 @@ def _screen_end(
     who = problem.team.grasps[int(np.argmax(gaps))].name
     whose = whose_hold(who, problem.team.agents)
     text = f"out of reach at the {name} of the lift: {whose} grasp stays {gaps.max():.3f} m short"
+    text += how_far_it_reaches(problem, near.coordinates, int(np.argmax(gaps)))
     text += _range_of_motion(problem, kinematics, pose, again, deadline)
     return InfeasibilityReason("grasp_closure", who, float(gaps.max()), "m", text), near
 

@@ -17,7 +17,7 @@ from liftopt.files.bounded_read import read_regular
 from liftopt.multibody.dh import BodyInertia
 from liftopt.multibody.robots.description import Mimic, RobotDescription, RobotJoint, RobotLink
 from liftopt.multibody.robots.robot_shape import shapes_of
-from liftopt.multibody.robots.urdf_shape import LARGEST, checked_shape
+from liftopt.multibody.robots.urdf_shape import LARGEST, WITHOUT_AXIS, checked_shape
 from liftopt.multibody.robots.xacro_text import INSTALL, expanded
 from liftopt.types import Array
 
@@ -98,7 +98,10 @@ def _parsed(tree: Element, source: str) -> Any:
 def _needed(element: Element) -> Element:
     """Return an element without what it holds that is not in ``NEEDED``."""
     copy = Element(element.tag, element.attrib)
-    copy.extend([_needed(inner) for inner in element if inner.tag in NEEDED.get(element.tag, ())])
+    without = ("axis",) if element.get("type") in WITHOUT_AXIS else ()
+    copy.extend(
+        [_needed(inner) for inner in element if inner.tag in NEEDED.get(element.tag, ()) and inner.tag not in without]
+    )
     return copy
 
 

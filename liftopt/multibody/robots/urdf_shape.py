@@ -12,6 +12,7 @@ from liftopt.multibody.robots.description import KINDS, LARGEST_NUMBER
 JUDGED_LATER = ("mass", "inertia", "limit", "safety_controller")  # a number that is none is a finding there
 LARGEST = 20_000_000  # characters; the largest public ones have some 500 000
 MOST_LINKS = 2000
+WITHOUT_AXIS = ("fixed", "floating")  # joints of which URDF reads none
 INERTIAL = ("origin", "mass", "inertia")
 # Elements of a link or a joint, and their attributes that are numbers, with how many of them.
 NUMBERS = {
@@ -66,6 +67,8 @@ def _check_inertial(link: Element, source: str) -> None:
 def _check_numbers(element: Element, source: str) -> None:
     place = f"{source}: {element.tag} {element.get('name')}"
     for inner in element.iter():
+        if inner.tag == "axis" and element.get("type") in WITHOUT_AXIS:
+            continue
         for name, count in NUMBERS.get(inner.tag, {}).items():
             value = inner.get(name)
             if value is not None and not _are_numbers(value, count, any_size=inner.tag in JUDGED_LATER):
