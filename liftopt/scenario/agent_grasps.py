@@ -7,15 +7,18 @@ from dataclasses import replace
 
 from liftopt.multibody.agent import Agent, Grasp
 from liftopt.multibody.dh import rotation_z
+from liftopt.multibody.person.anthropometry import link_lengths
 from liftopt.multibody.person.holds import along_bar, hand_on
+from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.robots.sawyer import LEVEL_TOOL
 from liftopt.scenario.agents import Person
-from liftopt.scenario.grasps import PlacedGrasp, placed_grasps
+from liftopt.scenario.grasps import PlacedGrasp, heights_of, placed_grasps
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import stand_of
 from liftopt.scenario.robot import Robot
 from liftopt.types import Array
 
+ON_TOP = 1e-3  # [m]
 AGAINST_A_SIDE = ("side", "handle")
 
 
@@ -46,7 +49,23 @@ def _reference(scenario: Scenario, hold: PlacedGrasp) -> Array:
     yaw = stand_of(scenario, hold.agent).yaw_deg
     if hold.hand is None:
         return _turned(LEVEL_TOOL, yaw - 180.0)
-    return _turned(hand_on(hold.hold, hold.hand), 90.0 * hold.quarters if hold.hold in AGAINST_A_SIDE else yaw)
+    hand = hand_on(hold.hold, hold.hand, holds_from_below(scenario, hold))
+    return _turned(hand, 90.0 * hold.quarters if hold.hold in AGAINST_A_SIDE else yaw)
+
+
+def holds_from_below(scenario: Scenario, hold: PlacedGrasp) -> bool:
+    """Whether a fist around a handle comes from below, as forearms do where it is higher than the elbows.
+
+    That is told by the mean of both ends of the lift and by upper arms that hang: nobody changes the grip on the way.
+    There is no room below a handle on top of the object.
+    """
+    person = scenario.agents[hold.agent]
+    if hold.hold != "handle" or not isinstance(person, Person):
+        return False
+    if hold.point[2] > scenario.object.height / 2.0 - ON_TOP:
+        return False
+    lengths = link_lengths(Subject(person.stature, person.mass, person.sex))
+    return sum(heights_of(scenario, hold.point)) / 2.0 > lengths.l1 + lengths.l2 - lengths.l4
 
 
 def _turned(rotation: Array, about_z_deg: float) -> Array:

@@ -15,7 +15,7 @@ from liftopt.multibody.person.whole_body import whole_human_agent
 from liftopt.multibody.placement import Placement
 from liftopt.multibody.solids import Solid, placed_box
 from liftopt.multibody.table import lifted_table
-from liftopt.scenario.agent_grasps import with_grasps
+from liftopt.scenario.agent_grasps import holds_from_below, with_grasps
 from liftopt.scenario.agents import Person
 from liftopt.scenario.grasps import grasp_points, middle_of_grasps, middle_of_hands, placed_grasps
 from liftopt.scenario.model import Scenario
@@ -61,7 +61,8 @@ def _bare_agent(scenario: Scenario, name: str, urdf: str | None) -> Agent:
 
 def agent_key(scenario: Scenario, name: str) -> Hashable:
     """Return all that an agent's model depends on: two scenarios with equal keys give the same agent."""
-    holds = tuple((hold.name, hold.hold, hold.quarters) for hold in placed_grasps(scenario) if hold.agent == name)
+    own = [hold for hold in placed_grasps(scenario) if hold.agent == name]
+    holds = tuple((hold.name, hold.hold, hold.quarters, holds_from_below(scenario, hold)) for hold in own)
     entries = tuple(value for key, value in scenario.agents[name] if key != "weight")
     return name, entries, stand_of(scenario, name), holds, scenario.objective.preset
 

@@ -89,12 +89,14 @@ def _check_place(scenario: ScenarioFields, end: str) -> None:
 
 
 def _check_distance(scenario: ScenarioFields, key: str, distance: float | None) -> None:
-    task, first = scenario.task, lead(scenario)
+    ahead, first = scenario.task.standing_distance, lead(scenario)
     if distance is not None and (scenario.agents[first].kind != "person" or stand_of(scenario, first).yaw_deg % 360.0):
         raise InputError(key, distance, f"counts from the feet of a person who faces along X, not {first}; {OWN_PLACE}")
-    room = task.standing_distance - (scenario.object.depth / 2.0 - middle_of_hands(scenario, first)[0])
-    if distance_key(scenario) == DISTANCE and (distance or 0.0) >= room:
-        where = f"standing_distance {task.standing_distance:g} m, object.depth {scenario.object.depth:g} m"
+    if ahead is None or distance_key(scenario) != DISTANCE:
+        return
+    room = ahead - (scenario.object.depth / 2.0 - middle_of_hands(scenario, first)[0])
+    if (distance or 0.0) >= room:
+        where = f"standing_distance {ahead:g} m, object.depth {scenario.object.depth:g} m"
         raise InputError(
             key,
             FREE if distance is None else distance,

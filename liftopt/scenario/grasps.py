@@ -86,16 +86,26 @@ def middle_of_grasps(scenario: ScenarioFields) -> Point:
 
 def grasp_heights(scenario: ScenarioFields) -> tuple[float, float]:
     """Return how high the middle of the grasps is at the start and at the end [m]."""
-    start, end = (_grasp_height(scenario, place) for place in (scenario.task.start, scenario.task.end))
+    return heights_of(scenario, middle_of_grasps(scenario))
+
+
+def heights_of(scenario: ScenarioFields, point: Point) -> tuple[float, float]:
+    """Return how high a point of the object, in its axes from its centre, is at the start and at the end [m]."""
+    start, end = (_height(scenario, place, point) for place in (scenario.task.start, scenario.task.end))
     return start, end
 
 
-def _grasp_height(scenario: ScenarioFields, place: GraspPlace | ObjectPlace) -> float:
+def _height(scenario: ScenarioFields, place: GraspPlace | ObjectPlace, point: Point) -> float:
+    (x, _, z), above = point, 0.0
     if isinstance(place, GraspPlace):
-        return place.height
-    x, _, z = middle_of_grasps(scenario)
+        known = middle_of_grasps(scenario)
+        if point == known:
+            return place.height
+        x, z, above = x - known[0], z - known[2], place.height
+    else:
+        above = place.z
     pitch = math.radians(place.pitch_deg)
-    return place.z + z * math.cos(pitch) - x * math.sin(pitch)
+    return above + z * math.cos(pitch) - x * math.sin(pitch)
 
 
 def _placed(scenario: ScenarioFields, name: str, agent: str, hand: Hand | None) -> PlacedGrasp:

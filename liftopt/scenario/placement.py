@@ -38,14 +38,14 @@ def stand_of(scenario: ScenarioFields, name: str) -> Stand:
     Raises:
         InputError: the scenario does not say it, and the agent is none of the two that stand opposite each other.
     """
-    agent, ahead = scenario.agents[name], scenario.task.standing_distance
+    agent = scenario.agents[name]
     if isinstance(agent, Person):
         first = name == lead(scenario)
-        feet = agent.position or _default(scenario, name, {lead(scenario): (0.0, 0.0)}, (ahead, 0.0), "position")
+        feet = agent.position or ((0.0, 0.0) if first else (_opposite(scenario, name, "position"), 0.0))
         heading = agent.heading_deg if agent.heading_deg is not None else 0.0 if first else 180.0
         return Stand(*feet, heading)
     base = agent.base
-    x = base.x if base.x is not None else _default(scenario, name, {}, (ahead, 0.0), "base.x")[0]
+    x = base.x if base.x is not None else _opposite(scenario, name, "base.x")
     return Stand(x, base.y, base.yaw_deg)
 
 
@@ -60,11 +60,11 @@ def distance_key(scenario: ScenarioFields) -> str | None:
     return DISTANCE if agent.base.x is None else f"{name}.base.x"
 
 
-def _default(
-    scenario: ScenarioFields, name: str, known: dict[str, tuple[float, float]], opposite: tuple[float, float], key: str
-) -> tuple[float, float]:
-    """Return where one stands who does not say it."""
-    places = {partner(scenario): opposite} | known
-    if name not in places:
+def _opposite(scenario: ScenarioFields, name: str, key: str) -> float:
+    """Return how far ahead of the lead an agent stands who does not say it by its key [m]."""
+    if name != partner(scenario):
         raise InputError(f"{name}.{key}", NO_VALUE, "is missing; only the two who face each other have a default place")
-    return places[name]
+    ahead = scenario.task.standing_distance
+    if ahead is None:
+        raise InputError(DISTANCE, NO_VALUE, f"is missing; must be how far off {name} stands, from 0.5 to 4 m")
+    return ahead

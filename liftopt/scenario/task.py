@@ -53,7 +53,9 @@ Place = Annotated[Annotated[GraspPlace, Tag(BY_GRASP)] | Annotated[ObjectPlace, 
 class Lift(Section):
     """From where to where, how far apart the two stand, and what is zero at both ends."""
 
-    standing_distance: Annotated[float, number("first person's feet to the robot's base", "m", 0.5, 4.0)]
+    standing_distance: Annotated[
+        float | None, number("first person's feet to the robot's base, or to who stands opposite", "m", 0.5, 4.0)
+    ] = None
     rest: Annotated[RESTS, entry("zero at both ends: the velocity, or the acceleration too")] = "velocity"
     start: Annotated[Place, entry("where the object is at first", PLACED)]
     end: Annotated[Place, entry("where the object is at last", PLACED)]

@@ -75,8 +75,24 @@ def test_a_hand_in_a_handle_turns_about_a_bar_along_its_side() -> None:
     for changes, along in (({}, [1.0, 0.0, 0.0]), (turned, [0.0, 1.0, 0.0])):
         for grasp in agent_of(held("handle", **changes), "human").grasps:
             assert grasp.bar is not None
-            np.testing.assert_allclose(grasp.bar, along, atol=1e-12)
+            np.testing.assert_allclose(np.abs(grasp.bar), along, atol=1e-12)
     assert all(grasp.bar is None for place in ("side", "edge") for grasp in agent_of(held(place), "human").grasps)
+
+
+def test_a_fist_comes_from_below_where_the_handle_is_higher_than_the_elbows() -> None:
+    """By hand: the default person's elbows hang at about 1.1 m; the fists change their grip about there."""
+    keys = {}
+    for low in (0.6, 0.8, 1.2, 1.4):
+        scenario = held("handle", **{"task.start": {"x": 0.6, "z": low}, "task.end": {"x": 0.6, "z": low + 0.2}})
+        keys[low] = agent_key(scenario, "human")
+        thumbs = [grasp.R_hand_object.T[:, 1] for grasp in agent_of(scenario, "human").grasps]
+        np.testing.assert_allclose(thumbs, [[1.0 if low < 1.0 else -1.0, 0.0, 0.0]] * 2, atol=1e-12)
+    assert keys[0.6] == keys[0.8] != keys[1.2] == keys[1.4]
+    top = {"place": "handle", "position": [0.0, 0.0, 0.15]}
+    high = {"task.start": {"x": 0.6, "z": 1.4}, "task.end": {"x": 0.6, "z": 1.6}}
+    changes = {**BOX, "human.hands": ["right"], "object.grasps": {"human": top}, **high}
+    (grasp,) = agent_of(load_scenario("table5", changes), "human").grasps
+    np.testing.assert_allclose(grasp.R_hand_object.T[:, 1], [1.0, 0.0, 0.0], atol=1e-12)
 
 
 def test_another_place_is_another_agent_to_caches() -> None:

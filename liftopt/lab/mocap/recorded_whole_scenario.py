@@ -28,7 +28,6 @@ from liftopt.types import Array
 HEIGHT = 0.25  # m of the box: markers do not show it
 LEAST = 0.2  # m of its depth and width
 IDLE = 0.02  # of the other hand's force; one that bears no more does not hold
-DISTANCE = 1.9  # m to a robot that is not there, which a scenario states all the same
 
 
 def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: str) -> Scenario:
@@ -85,7 +84,6 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
             "grasps": grasps,
         },
         "task": {
-            "standing_distance": DISTANCE,
             "start": {"x": to_millimetres(start[0]), "z": to_millimetres(start[2])},
             "end": {"x": to_millimetres(end[0]), "z": to_millimetres(end[2])},
         },

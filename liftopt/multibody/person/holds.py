@@ -17,9 +17,10 @@ Direction = tuple[float, float, float]
 HALF = float(np.sqrt(0.5))
 # Where the fingers of a right hand point, and where its palm looks. Under an edge or the bottom the palm is up and the
 # fingers ahead; at a corner they point in towards the middle as well. On the sides both palms look at each other, the
-# fingers ahead and down. In a handle, a bar along X, the fist hangs: palm inwards, thumb ahead; about the bar it turns
-# as it likes (``Grasp.bar``). Choices of this model, as a person who stands before a box would hold it; a grasp may
-# turn from there (``Grasp.max_turn``).
+# fingers ahead and down. In a handle, a bar along X, the fist hangs: palm inwards, thumb ahead; around one that is
+# higher than the elbow it comes from below, thumb behind. About the bar it turns as it likes (``Grasp.bar``). All are
+# choices of this model, as a person who stands before a box would hold it; a grasp may turn from there
+# (``Grasp.max_turn``).
 RIGHT_HAND: dict[Hold, tuple[Direction, Direction]] = {
     "edge": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     "bottom": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
@@ -27,11 +28,18 @@ RIGHT_HAND: dict[Hold, tuple[Direction, Direction]] = {
     "side": ((HALF, 0.0, -HALF), (0.0, 1.0, 0.0)),
     "handle": ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
 }
+FROM_BELOW: tuple[Direction, Direction] = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 
 
-def hand_on(hold: Hold, hand: Literal["right", "left"]) -> Array:
-    """Return R_holder_hand (3, 3): the grasp frame of a hand on a level object, in the axes of who holds it."""
-    fingers, palm = (np.array(direction) for direction in RIGHT_HAND[hold])
+def hand_on(hold: Hold, hand: Literal["right", "left"], from_below: bool = False) -> Array:
+    """Return R_holder_hand (3, 3): the grasp frame of a hand on a level object, in the axes of who holds it.
+
+    Args:
+        hold: how it holds.
+        hand: which.
+        from_below: whether the fist around a handle comes from below.
+    """
+    fingers, palm = (np.array(direction) for direction in (FROM_BELOW if from_below else RIGHT_HAND[hold]))
     frame = np.column_stack([-fingers, np.cross(fingers, palm), palm]) + 0.0  # no negative zeros
     if hand == "right":
         return frame
