@@ -125,7 +125,7 @@ def listed(file: Path, descriptions: Path) -> Iterator[Asked]:
     """Give the robots of a list."""
     for table in tomllib.loads(file.read_text(encoding="utf-8"))["robot"]:
         entries = dict(table["entries"])
-        entries["model"] = str(descriptions / entries["model"])
+        entries["model"] = str((descriptions / entries["model"]).absolute())
         yield Asked(table["name"], table["maker"], table["source"], entries)
 
 

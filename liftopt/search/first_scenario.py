@@ -32,6 +32,8 @@ SHARES, HIGH = (0.4, 0.25, 0.12), 0.4
 MASSES = (2.0, 1.0, 0.5, 0.2, 0.1)
 PAYLOAD_SHARE = 0.9  # of the payload, for the gripper and half of the box
 GRIPPER = {"length": 0.15, "mass": 0.4}
+# A hand whose frame is as near to the last joint [m] holds farther out, by this share of the robot's reach.
+AT_WRIST, FINGERS_SHARE = 0.01, 0.2
 PATIENCE = 60.0  # [s] for all trials together
 MOBILE = "footprint"  # in the name of the base link of a robot that stands on the floor
 SETTLED = 2  # digits of the lengths in the file
@@ -90,9 +92,14 @@ def _known(robot: Mapping[str, Any]) -> _Robot:
     published = None if chosen.known is None else chosen.known.payload
     payload = section.payload or published or float("inf")
     chain = chosen.examination().chain
-    has_hand = any(FINGER.search(link) for link in chain.links[-1].links)
-    given = "tool" in robot or has_hand or payload < 4.0 * GRIPPER["mass"]
-    return _Robot(robot if given else {**robot, "tool": dict(GRIPPER)}, payload, MOBILE in chain.base)
+    # The link that the last joint moves may be called after what it carries.
+    has_hand = any(FINGER.search(link) for link in chain.links[-1].links[1:])
+    own = None if payload < 4.0 * GRIPPER["mass"] else GRIPPER
+    if has_hand:
+        at_wrist = float(np.linalg.norm(chain.T_last_grasp[:3, 3])) < AT_WRIST
+        own = {"length": round(FINGERS_SHARE * chain.reach, SETTLED), "mass": 0.0} if at_wrist else None
+    tool = {} if "tool" in robot or own is None else {"tool": dict(own)}
+    return _Robot({**robot, **tool}, payload, MOBILE in chain.base)
 
 
 def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, Any]:
