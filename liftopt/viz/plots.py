@@ -26,6 +26,7 @@ from liftopt.viz.plots_snapshots import snapshots
 from liftopt.viz.plots_spine import spine_load
 from liftopt.viz.plots_standing import centre_of_pressure
 from liftopt.viz.plots_style import STYLE, head
+from liftopt.viz.robot_words import joint_words
 
 PNG_DPI = 200
 
@@ -56,7 +57,7 @@ class AgentPlot:
         kind: of the agents.
         name: of its file where there is one of the kind only.
         what: end of the file's name where there are several, after the agent's.
-        caption: as that of a plot; ``{who}`` stands for the agent.
+        caption: as that of a plot; ``{who}`` stands for the agent, ``{signs}`` for those of a robot's joints.
         draw: makes that of one agent.
         standing: whether it is of those only who stand on soles.
     """
@@ -121,8 +122,7 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
         "robot",
         "robot_angles",
         "angles",
-        "Joint angles of {who} in the signs of the paper's Table 3, with the manufacturer's joint names. Predicted "
-        "side of Fig. 16 of the paper.",
+        "Joint angles of {who} in {signs}. Predicted side of Fig. 16 of the paper.",
         robot_angles,
     ),
     AgentPlot(
@@ -202,7 +202,8 @@ def figure_names(agents: Sequence[AgentTrajectory], agent: AgentTrajectory) -> d
 def _of(plot: AgentPlot, agent: AgentTrajectory, lift: Lift) -> Plot:
     agents = lift.dense.agents
     name, alone = figure_names(agents, agent)[plot.what], who_is(agent, agents).is_alone
-    caption = plot.caption.format(who=who_is(agent, agents).called)
+    signs = joint_words(lift.dense.scenario, agent) if agent.kind == "robot" else ""
+    caption = plot.caption.format(who=who_is(agent, agents).called, signs=signs)
 
     def draw(lift: Lift) -> Figure:
         return plot.draw(lift, lift.dense[agent.name])

@@ -18,6 +18,7 @@ from liftopt.viz.who import robot_of
 
 Quantity = Literal["angle", "torque"]
 QUANTITIES: tuple[Quantity, Quantity] = ("angle", "torque")
+LONGEST = 44  # characters of a panel's title
 NEAR = 0.6  # a limit is drawn to scale where the curve uses this much of it
 ARM = ("Q5", "Q7")  # shoulder and elbow flexion, the joints of Figs. 13 and 14
 
@@ -79,13 +80,21 @@ def _grid(lift: Lift, curves: Sequence[JointCurve], quantity: Quantity) -> Figur
     for index, curve in enumerate(curves):
         axes = grid[index // columns][index % columns]
         _panel(axes, lift, curve, quantity, LINES[0] if quantity == "angle" else LINES[1])
-        axes.set_title(curve.label)
+        axes.set_title(short(curve.label))
         axes.set_ylabel(_named(curve, quantity))
     if len(curves) % columns:
         _explain(grid[-1].pop())
         grid[-2][-1].tick_params(labelbottom=True)
     time_axes(grid, float(lift.dense.time[-1]))
     return figure
+
+
+def short(label: str) -> str:
+    """Return a label that is no longer than its panel is wide, its middle left out if need be."""
+    if len(label) <= LONGEST:
+        return label
+    kept = LONGEST - 1
+    return f"{label[: kept // 2]}\N{HORIZONTAL ELLIPSIS}{label[len(label) - (kept - kept // 2) :]}"
 
 
 def _explain(axes: Axes) -> None:

@@ -30,6 +30,7 @@ from liftopt.viz.report_clearance import clearance_rows
 from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
+from liftopt.viz.robot_words import data_words, models_words
 from liftopt.viz.viewer_page import playback_page
 from liftopt.viz.who import stand_opposite
 
@@ -97,6 +98,8 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = (), *, m
         "team": team_words(solution),
         "means": means_words(solution.agents),
         "bodies": bodies_words(solution.persons),
+        "machines": models_words(solution.scenario, solution.robots),
+        "machine_data": data_words(solution.scenario, solution.robots),
         "holds": sum(len(agent.grasps) for agent in solution.agents),
         "heights": grasp_heights(solution.scenario),
         "height_of": "the edges they hold" if by_grasps else "its underside",

@@ -21,6 +21,7 @@ from liftopt.viz.base import base_of
 from liftopt.viz.plots import figure_names
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_tables import joint_rows
+from liftopt.viz.robot_words import a_robot, table_words
 from liftopt.viz.who import robot_of
 
 # Without legs that move, and with them.
@@ -39,6 +40,7 @@ class Reported:
     Attributes:
         address: what the addresses of its sections in the page end with; empty where it is the only one of its kind.
         heading: what their headings end with.
+        joints_are: of a robot, what the names in its table are.
         joints: rows of its table of joints.
         figures: names of its figures by what they show, ``"angles"``.
         labels: of the joints.
@@ -51,6 +53,7 @@ class Reported:
     joints: list[dict[str, Any]]
     figures: dict[str, str]
     labels: dict[str, str]
+    joints_are: str = ""
     sex: str = ""
     ergonomics: Ergonomics | None = None
 
@@ -66,6 +69,7 @@ def reported(lift: Lift, agent: AgentTrajectory) -> Reported:
         joints=joint_rows(curves, solution),
         figures=figure_names(agents, agent),
         labels={curve.joint: curve.label for curve in curves},
+        joints_are="" if person else table_words(solution.scenario, agent),
         sex=subject_in(solution, agent.name).sex if person else "",
         ergonomics=ergonomics_of(solution, agent) if person else None,
     )
@@ -122,7 +126,7 @@ def team_words(solution: Solution) -> str:
             kind = "man" if body.sex == "male" else "woman"
             words.append(f"a {kind} of {body.stature:.2f} m and {body.mass:g} kg{named}")
         else:
-            words.append(f"a {robot_of(solution.scenario, agent).model.capitalize()} robot{named}")
+            words.append(f"{a_robot(robot_of(solution.scenario, agent))}{named}")
     text = listed(words)
     if len(solution.agents) == 2:
         first, second = (base_of(agent)[:2, 3] for agent in agents_of(solution.scenario, solution.urdfs))

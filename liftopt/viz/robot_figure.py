@@ -22,6 +22,7 @@ from liftopt.viz.simplified_mesh import creased, simplified
 Known = dict[tuple[MeshFile, tuple[float, ...]], tuple[Triangles, ...]]
 GREY: Colour = (0.66, 0.67, 0.69)  # of what has no colour
 MOST_TRIANGLES = 40_000  # of a robot: some 1.5 MB of a page
+SAME = 2e-4  # [m]: vertices so near are one, as those of neighbouring triangles of an STL are
 FINEST, COARSER = 0.003, 1.25  # cell of the grid of the first try [m], and how much coarser each next one is
 FAR = 1.5  # times as many triangles as are allowed, from which on two steps are one
 FEWEST = 10  # cells along a mesh's largest extent
@@ -44,7 +45,7 @@ class FigurePiece:
 
 def figure_of(chain: RobotChain) -> tuple[FigurePiece, ...]:
     """Return what a robot is drawn with, all that hangs on its base; nothing where none of its meshes can be read."""
-    pieces = list(_pieces(chain))
+    pieces = [FigurePiece(piece.joint, piece.colour, _fewer(piece.mesh, SAME)) for piece in _pieces(chain)]
     if not pieces:
         return ()
     cell = FINEST

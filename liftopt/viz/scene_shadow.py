@@ -26,7 +26,7 @@ SIDES = 32
 
 def shadow_commands(root: str, parts: Iterable[Part]) -> list[Command]:
     """Return the command that darkens the floor under parts, which are given where they stand, below a node."""
-    spots = [_disc(centre, half) for part in parts for centre, half in _spots(part.mesh.vertices)]
+    spots = [_disc(centre, half) for part in parts for centre, half in _spots(part.mesh)]
     if not spots:
         return []
     count = len(spots[0].vertices)
@@ -37,9 +37,9 @@ def shadow_commands(root: str, parts: Iterable[Part]) -> list[Command]:
     return [set_object(f"{root}/shadow", mesh, BLACK, colours=np.tile(colours, (len(spots), 1)))]
 
 
-def _spots(vertices: Array) -> Iterator[tuple[Array, Array]]:
+def _spots(mesh: Mesh) -> Iterator[tuple[Array, Array]]:
     """Yield centre and half axes (2,) of each place where a part touches the floor."""
-    left = vertices[vertices[:, 2] < TOUCHES, :2]
+    left = np.vstack([mesh.vertices[mesh.vertices[:, 2] < TOUCHES], *_along_edges(mesh)])[:, :2]
     while len(left):
         near, count = left[:1], 0
         while len(near) > count:
@@ -48,6 +48,15 @@ def _spots(vertices: Array) -> Iterator[tuple[Array, Array]]:
             near = left[inside]
         left = left[~inside]
         yield (near.min(axis=0) + near.max(axis=0)) / 2, np.ptp(near, axis=0) / 2
+
+
+def _along_edges(mesh: Mesh) -> Iterator[Array]:
+    """Yield points (n, 3) along each edge on the floor that is longer than what lies apart, as those of a plate are."""
+    ends = mesh.vertices[np.concatenate([mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)])]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    for edge in np.flatnonzero((lengths > APART) & (ends[:, :, 2] < TOUCHES).all(axis=1)):
+        (start, end), count = ends[edge], int(np.ceil(2.0 * lengths[edge] / APART))
+        yield start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
 
 
 def _disc(centre: Array, half: Array) -> Mesh:

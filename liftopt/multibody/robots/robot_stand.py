@@ -13,6 +13,7 @@ STAND = "stand_"  # begins the names of these shapes
 GREY = Colour("robot_stand", (0.36, 0.37, 0.39, 1.0))
 ON_FLOOR = 0.03  # [m]: whatever is no higher stands on the floor
 SOLE = 0.06  # [m] above its lowest point: what of the base rests on the stand
+BELOW = 0.2  # [m] from the middle: so far is below it
 STEEP = np.cos(np.radians(45.0))  # of a base that leans farther than that, the stand is a plate behind it
 BROAD = 0.45  # [m]: what is broader stands on a platform, not on a column
 THIN, THICK = 0.06, 0.14  # radius of a column [m]
@@ -31,13 +32,22 @@ def robot_stand(T_world_base: Array, base: Array) -> tuple[Shape, ...]:
     if T_world_base[2, 2] < STEEP:
         return tuple(_plate(base))
     points = base @ T_world_base[:3, :3].T + T_world_base[:3, 3]
-    lowest = float(points[:, 2].min())
-    if lowest <= ON_FLOOR:
+    if points[:, 2].min() <= ON_FLOOR:
         return ()
-    sole = points[points[:, 2] < lowest + SOLE, :2]
-    low, high = sole.min(axis=0), sole.max(axis=0)
+    # What is lowest may hang beside it, as an arm does: it stands on what is below its middle.
+    below = points[np.linalg.norm(points[:, :2] - T_world_base[:2, 3], axis=1) < BELOW]
+    if len(below) and below[:, 2].min() > points[:, 2].min() + SOLE:
+        points = below
+    low, high, lowest = _sole(points)
     T_base_world = np.asarray(np.linalg.inv(T_world_base))
     return tuple(shape.seen_from(T_base_world) for shape in _pedestal((low + high) / 2.0, high - low, lowest))
+
+
+def _sole(points: Array) -> tuple[Array, Array, float]:
+    """Return the corners (2,) around the lowest of points (n, 3), seen from above, and the height of the lowest one."""
+    lowest = float(points[:, 2].min())
+    sole = points[points[:, 2] < lowest + SOLE, :2]
+    return sole.min(axis=0), sole.max(axis=0), lowest
 
 
 def _pedestal(middle: Array, extent: Array, height: float) -> Iterator[Shape]:
@@ -55,9 +65,7 @@ def _pedestal(middle: Array, extent: Array, height: float) -> Iterator[Shape]:
 
 def _plate(base: Array) -> Iterator[Shape]:
     """Give a plate behind the base, in its frame."""
-    lowest = float(base[:, 2].min())
-    sole = base[base[:, 2] < lowest + SOLE, :2]
-    low, high = sole.min(axis=0), sole.max(axis=0)
+    low, high, lowest = _sole(base)
     size = np.maximum(high - low + 2.0 * BEYOND, LEAST)
     placement = np.eye(4)
     placement[:3, 3] = [*((low + high) / 2.0), lowest - PLATE / 2.0]
