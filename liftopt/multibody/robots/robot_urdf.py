@@ -38,6 +38,7 @@ def robot_urdf(
     tool_mass: float,
     tool_direction: str = UNTURNED,
     tool_turn: float = 0.0,
+    with_solids: bool = True,
 ) -> str:
     """Return the URDF of a robot whose base is bolted to the world.
 
@@ -49,6 +50,7 @@ def robot_urdf(
         tool_mass: of the tool [kg].
         tool_direction: axis of the grasp frame along which the tool extends; it becomes z of ``<name>_grasp``.
         tool_turn: how the tool is turned about that [rad].
+        with_solids: and a stand; what needs masses alone does without.
 
     Raises:
         InputError: two of its names cannot be told apart in a URDF.
@@ -57,7 +59,7 @@ def robot_urdf(
     taken = (*joints, f"{name}_grasp", f"{name}_tool", "world")
     base, *links = _named(name, [chain.base, *(link.joint.child for link in chain.links)], taken, chain)
     turns = [turned(link) for link in chain.links]
-    solids = robot_solids(chain)
+    solids = robot_solids(chain) if with_solids else None
     moving, parent, before = [], base, np.eye(4)
     bounded = zip(chain.links, chain.ranges, turns, joints, links, strict=True)
     for number, (link, ends_of_range, turn, joint, own) in enumerate(bounded):
@@ -66,12 +68,12 @@ def robot_urdf(
             ends_of_range.lower, ends_of_range.upper, float(link.joint.effort or 0.0), float(link.joint.velocity or 0.0)
         )
         body = link.body.transformed(back[:3, :3], np.zeros(3))
-        shapes = tuple(shape.seen_from(back) for shape in solids.shapes[number])
+        shapes = tuple(shape.seen_from(back) for shape in solids.shapes[number]) if solids else ()
         kind = "prismatic" if link.joint.kind == "prismatic" else "revolute"
         placement = before @ link.placement @ turn
         moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, shapes))  # type: ignore[arg-type]
         parent, before = own, back
-    stand = (*solids.shapes[BASE], *robot_stand(T_world_base, solids.base))
+    stand = (*solids.shapes[BASE], *robot_stand(T_world_base, solids.base)) if solids else ()
     flange = before @ chain.T_last_grasp @ along(tool_direction, tool_turn)
     fixed = [FixedLink(base, "world", T_world_base, _sound(chain.base_body), stand)]
     if tool_length or tool_mass:
