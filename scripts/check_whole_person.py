@@ -181,7 +181,7 @@ def summary(rows: list[Row]) -> str:
 
 def _cause(reason: str) -> str:
     """Return a word on what is in the way."""
-    words = ("refused", "come", "torque", "reach", "balance", "moment", "force", "slip", "tip", "lean")
+    words = ("refused", "weak", "come", "torque", "turn", "soles", "reach", "moment", "force", "slip", "tip", "lean")
     return next((word for word in words if word in reason), "other" if reason else "not explained")
 
 

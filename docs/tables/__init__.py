@@ -35,6 +35,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 def write_tables(folder: Path) -> None:
     """Write every table as a Markdown file into a folder, which is made, for pages to include."""
+    from tables.checked_robots import checked_robots, checked_table1
     from tables.commands import commands
     from tables.faulty_robots import faulty_robots
     from tables.json_keys import json_keys
@@ -48,7 +49,7 @@ def write_tables(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     told = (
         scenario_keys, presets, variables, attributes, solution_attributes, json_keys, urdf_names, rooms, commands,
-        terminal, faulty_robots,
+        terminal, faulty_robots, checked_robots, checked_table1,
     )  # fmt: skip
     for make in told:
         (folder / f"{make.__name__}.md").write_text(make(), encoding="utf-8")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from liftopt.assessment.clearance import clearance_findings, clearance_verdict
@@ -10,7 +10,9 @@ from liftopt.assessment.grasp import tilt_findings
 from liftopt.assessment.mathematics import failure_findings, mathematics_findings, verdict
 from liftopt.assessment.person import person_findings
 from liftopt.assessment.robot import robot_findings
+from liftopt.assessment.robot_data import data_findings, robot_data
 from liftopt.assessment.who import Who, who_is
+from liftopt.scenario.robot import Robot
 from liftopt.solution.clearance_of import clearance_of
 from liftopt.solution.finding import (
     CLEARANCE,
@@ -47,7 +49,7 @@ def assessed(solution: Solution) -> Solution:
     mathematics = verdict(solution)
     if not solution.solved:
         nothing = [_not_assessed(who_is(agent, solution.agents)) for agent in solution.agents]
-        told = [mathematics, *nothing, NO_CLEARANCE, *failure_findings(solution)]
+        told = [mathematics, *nothing, NO_CLEARANCE, *failure_findings(solution), *_data(solution)]
         return replace(solution, assessment=Assessment.of(told))
     fine = between_knots(solution)
     clearance, verdicts, found = clearance_of(fine), [mathematics], []
@@ -60,6 +62,14 @@ def assessed(solution: Solution) -> Solution:
     others = [*apart, *tilt_findings(fine), *mathematics_findings(solution)]
     told = [*verdicts, clearance_verdict(apart), *found, *others]
     return replace(solution, assessment=Assessment.of(told), clearance=clearance)
+
+
+def _data(solution: Solution) -> Iterator[Finding]:
+    """Give what is noticed about the data of robots, which may be why there is no lift."""
+    for robot in solution.robots:
+        asked = solution.scenario.agents[robot.name]
+        assert isinstance(asked, Robot)
+        yield from data_findings(robot, who_is(robot, solution.agents), robot_data(asked))
 
 
 def _not_assessed(who: Who) -> Finding:

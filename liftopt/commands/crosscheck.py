@@ -16,7 +16,8 @@ def add_crosscheck_parser(commands: Any) -> None:
         "crosscheck",
         help="check the dynamics, or a solved lift, by independent means",
         description="Without RESULT, compare the paper's DH recursion with Pinocchio on random states of the human and "
-        "the robot. With one, put the solved motion to MuJoCo's inverse and forward dynamics and the energy balance.",
+        "Sawyer. With one, of any robot, put the solved motion to MuJoCo's inverse and forward dynamics and the energy "
+        "balance.",
         allow_abbrev=False,
     )
     parser.add_argument("result", nargs="?", metavar="RESULT", help="a result folder, or its solution.nc")

@@ -16,7 +16,7 @@ def shares(agents: Sequence[AgentTrajectory]) -> Array:
     """Return each agent's part (agents, K) of the vertical grasp force; NaN where there is no load to share."""
     vertical = np.stack([agent.load[:, 2] for agent in agents])
     load = vertical.sum(axis=0)
-    part = np.full_like(vertical, np.nan)
+    part: Array = np.full_like(vertical, np.nan)
     np.divide(vertical, load, out=part, where=np.abs(load) > FREE_FALL)
     return part
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from rich.console import Console
 from scipy.optimize import least_squares
 
 from liftopt.assessment.assess import assess, assessed
+from liftopt.assessment.failure_text import failure_text
 from liftopt.assessment.joints import Words, joint_findings
 from liftopt.assessment.text import verdict_text
 from liftopt.assessment.who import Who
@@ -83,7 +85,7 @@ def test_reach_ends_where_least_squares_end(ur10: Any) -> None:
     rng, ahead = np.random.default_rng(3), away[k] / np.linalg.norm(away[k])
     for beyond, held in ((-0.005, True), (0.005, False)):
         point = origin + (finding.limit + beyond) * ahead
-        seeds = [fine.q[k], *(np.clip(fine.q[k] + rng.normal(0.0, 0.4, 6), *bounds) for _ in range(8))]
+        seeds = [fine.q[k], *(np.clip(fine.q[k] + rng.normal(0.0, 0.4, 6), *bounds) for _ in range(4))]
         left = min(np.linalg.norm(least_squares(off, q, bounds=bounds, args=(point,)).fun) for q in seeds)
         assert bool(left < 1e-4) is held
 
@@ -119,6 +121,16 @@ def test_what_was_noticed_as_a_urdf_was_read_is_in_every_output_and_stays(ur10: 
     again = load_result(tmp_path / "kept")
     assert list(again.assessment) == list(told.assessment)
     assert again["robot"].remarks == ()
+
+
+def test_doubtful_data_are_told_where_there_is_no_lift(ur10: Any) -> None:
+    doubt = DataFinding("effort.same", "warned", "effort", 300.0, "as of all", "see")
+    robot = replace(ur10.solution["robot"], remarks=(doubt,))
+    agents = (ur10.solution["human"], robot)
+    told = assessed(replace(ur10.solution, agents=agents, outcome="infeasible: too weak"))
+    assert [finding.message for finding in _of(told, "robot.data")] == [f"Data of the robot: {doubt.told}."]
+    lines = failure_text(told, Path("a"), Path("a")).splitlines()
+    assert lines[1] == f"  to check: Data of the robot: {doubt.told}."
 
 
 def test_an_agent_from_a_file_carries_what_was_noticed(ur10: Any) -> None:

@@ -38,6 +38,11 @@ class ChainLink:
     body: BodyInertia
     links: tuple[str, ...]
 
+    @property
+    def range(self) -> JointRange:
+        """Between which ends the joint moves."""
+        return range_of(self.joint)
+
 
 @dataclass(frozen=True)
 class RobotChain:
@@ -70,7 +75,7 @@ class RobotChain:
     @property
     def ranges(self) -> tuple[JointRange, ...]:
         """Between which ends they move."""
-        return tuple(range_of(joint) for joint in self.joints)
+        return tuple(link.range for link in self.links)
 
     @property
     def lengths(self) -> Array:

@@ -20,7 +20,7 @@ from liftopt.types import Array
 CUTS = (0.25, 0.5, 0.75)  # of the extent of a part, where it is cut
 CRUMB = 0.01  # of it: what is smaller goes with what is nearest
 WASTED = 1.06  # of what they were apart: so large a part that is made of two may be
-WORTH = 1.15  # times as much room as with cuts: solids without any are taken that need no more
+WORTH = 1.03  # times as much room as with cuts: solids without any are taken that need no more
 FREE = 10.0  # of a part so fine that it is not cut, this part may be wasted anyhow
 ROUGH, MOST_ROUGH = (
     16,

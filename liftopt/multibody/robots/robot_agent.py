@@ -7,9 +7,11 @@ from dataclasses import replace
 
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.bounds import checked_number
+from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.description import RobotDescription
 from liftopt.multibody.robots.examination import examined, refuse
 from liftopt.multibody.robots.given_limits import GivenLimits
+from liftopt.multibody.robots.one_turn import turns_further, within_one_turn
 from liftopt.multibody.robots.resting_posture import heading
 from liftopt.multibody.robots.robot_urdf import robot_urdf
 from liftopt.multibody.robots.tool import UNTURNED, likely_direction
@@ -62,21 +64,26 @@ def robot_agent(
     checked_number(f"{name}.tool.mass", tool_mass, 0.0, 20.0, "kg")
     found = examined(description, grasp_frame=grasp_frame, base=base, locked=locked, limits=limits)
     refuse(found, description.source)
-    text = robot_urdf(
-        found.chain,
-        name,
-        T_world_base,
-        tool_length=tool_length,
-        tool_mass=tool_mass,
-        tool_direction=tool_direction or likely_direction(found.chain.T_last_grasp),
-        tool_turn=tool_turn,
-    )
-    agent = written_robot(
-        text,
-        name=name,
-        posture=posture,
-        joint_weights=joint_weights,
-        sliding=sliding,
-        ahead=heading(T_world_base) if ahead is None else ahead,
-    )
+    chain, front = found.chain, heading(T_world_base) if ahead is None else ahead
+
+    def written(chain: RobotChain, posture: Mapping[str, float] | None, shapes: bool) -> Agent:
+        text = robot_urdf(
+            chain,
+            name,
+            T_world_base,
+            tool_length=tool_length,
+            tool_mass=tool_mass,
+            tool_direction=tool_direction or likely_direction(chain.T_last_grasp),
+            tool_turn=tool_turn,
+            shapes=shapes,
+        )
+        return written_robot(
+            text, name=name, posture=posture, joint_weights=joint_weights, sliding=sliding, ahead=front
+        )
+
+    if turns_further(chain):
+        resting = written(chain, posture, shapes=False).posture
+        chain = within_one_turn(chain, resting)
+        posture = {joint.name: float(at) for joint, at in zip(chain.joints, resting, strict=True)}
+    agent = written(chain, posture, shapes=True)
     return replace(agent, remarks=found.findings)

@@ -38,7 +38,7 @@ def robot_urdf(
     tool_mass: float,
     tool_direction: str = UNTURNED,
     tool_turn: float = 0.0,
-    with_solids: bool = True,
+    shapes: bool = True,
 ) -> str:
     """Return the URDF of a robot whose base is bolted to the world.
 
@@ -50,7 +50,7 @@ def robot_urdf(
         tool_mass: of the tool [kg].
         tool_direction: axis of the grasp frame along which the tool extends; it becomes z of ``<name>_grasp``.
         tool_turn: how the tool is turned about that [rad].
-        with_solids: and a stand; what needs masses alone does without.
+        shapes: whether to find the shapes of its links, which takes a while, and which motion does not need.
 
     Raises:
         InputError: two of its names cannot be told apart in a URDF.
@@ -59,7 +59,7 @@ def robot_urdf(
     taken = (*joints, f"{name}_grasp", f"{name}_tool", "world")
     base, *links = _named(name, [chain.base, *(link.joint.child for link in chain.links)], taken, chain)
     turns = [turned(link) for link in chain.links]
-    solids = robot_solids(chain) if with_solids else None
+    solids = robot_solids(chain) if shapes else None
     moving, parent, before = [], base, np.eye(4)
     bounded = zip(chain.links, chain.ranges, turns, joints, links, strict=True)
     for number, (link, ends_of_range, turn, joint, own) in enumerate(bounded):
@@ -68,10 +68,10 @@ def robot_urdf(
             ends_of_range.lower, ends_of_range.upper, float(link.joint.effort or 0.0), float(link.joint.velocity or 0.0)
         )
         body = link.body.transformed(back[:3, :3], np.zeros(3))
-        shapes = tuple(shape.seen_from(back) for shape in solids.shapes[number]) if solids else ()
+        own_shapes = tuple(shape.seen_from(back) for shape in solids.shapes[number]) if solids else ()
         kind = "prismatic" if link.joint.kind == "prismatic" else "revolute"
         placement = before @ link.placement @ turn
-        moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, shapes))  # type: ignore[arg-type]
+        moving.append(MovingLink(joint, own, parent, kind, placement, bounds, body, own_shapes))  # type: ignore[arg-type]
         parent, before = own, back
     stand = (*solids.shapes[BASE], *robot_stand(T_world_base, solids.base)) if solids else ()
     flange = before @ chain.T_last_grasp @ along(tool_direction, tool_turn)

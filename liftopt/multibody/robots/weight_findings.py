@@ -32,7 +32,7 @@ def weight_findings(chain: RobotChain) -> Iterator[DataFinding]:
 
 def heaviest(chain: RobotChain) -> Array:
     """Return the largest effort (n,) that each joint needs to hold the robot in its postures [Nm, N]."""
-    model = load_model(robot_urdf(chain, "robot", np.eye(4), tool_length=0.0, tool_mass=0.0, with_solids=False))
+    model = load_model(robot_urdf(chain, "robot", np.eye(4), tool_length=0.0, tool_mass=0.0, shapes=False))
     data = model.createData()
     lower = np.array([max(ends.lower, -np.pi) for ends in chain.ranges])
     upper = np.array([min(ends.upper, np.pi) for ends in chain.ranges])

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from whole_markers import MAPPING, RATE, recorded_truth
 
 from liftopt.lab.comparison.experiment import Experiment, experiment
 from liftopt.lab.mocap.from_markers import recorded_lift
@@ -19,7 +20,6 @@ from liftopt.scenario.build import subject_of
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
-from tests.lab.whole_markers import MAPPING, RATE, recorded_truth
 
 STANDS, BENDS = 0.5, 1.5  # s before the lift: upright, and on the way to its start
 

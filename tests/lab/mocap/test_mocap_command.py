@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray
+from marker_files import write_trc
 
 from liftopt.commands.cli import main
-from tests.lab.marker_files import write_trc
 
 
 @pytest.fixture

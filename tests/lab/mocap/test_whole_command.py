@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import tomli_w
 import xarray
+from marker_files import write_c3d, write_trc
+from whole_markers import MAPPING, WholeTruth, whole_truth
 
 from liftopt.commands.cli import main
 from liftopt.lab.mocap.from_markers import recorded_lift
@@ -16,8 +18,6 @@ from liftopt.lab.mocap.loads import Load
 from liftopt.lab.mocap.recorded_scenario import recorded_scenario
 from liftopt.lab.mocap.whole_map import WholeMap
 from liftopt.scenario.model import load_scenario
-from tests.lab.marker_files import write_c3d, write_trc
-from tests.lab.whole_markers import MAPPING, WholeTruth, whole_truth
 
 CUTOFF = ["--cutoff", "20"]
 

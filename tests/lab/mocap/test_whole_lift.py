@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
+from whole_markers import MAPPING, SUBJECT, WholeTruth, whole_truth
 
 from liftopt.errors import InputError
 from liftopt.lab.mocap.from_markers import recorded_lift
@@ -21,7 +22,6 @@ from liftopt.lab.mocap.recording import ForcePlate, Recording
 from liftopt.lab.mocap.whole_map import WholeMap
 from liftopt.multibody.person.stance import human_stance
 from liftopt.multibody.urdf import load_model
-from tests.lab.whole_markers import MAPPING, SUBJECT, WholeTruth, whole_truth
 
 CUTOFF = 20.0  # Hz; far above the lift's 1 Hz, so that the filter changes nothing that is tested
 MASS = 6.0

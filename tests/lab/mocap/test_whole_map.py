@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 import tomli_w
+from whole_markers import MAPPING
 
 from liftopt.errors import InputError
 from liftopt.lab.mocap.map_file import load_marker_map
 from liftopt.lab.mocap.whole_map import WholeMap
-from tests.lab.whole_markers import MAPPING
 
 
 @pytest.mark.parametrize(("name", "count"), [("plug_in_gait", 34), ("biomech_57", 44), ("pose2sim", 16)])

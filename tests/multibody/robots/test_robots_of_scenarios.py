@@ -129,3 +129,19 @@ def test_python_reads_a_robot_at_once(file: Path) -> None:
     file.write_text(file.read_text().replace('<mass value="4.0"/>', '<mass value="nan"/>'))
     with pytest.raises(lo.InputError, match="l1"):
         lo.Robot.from_urdf(file, grasp_frame="tool0")
+
+
+def test_a_joint_that_turns_further_is_held_to_the_turn_around_its_posture(
+    arm: Callable[..., str], tmp_path: Path
+) -> None:
+    joint = '<joint name="j{}" type="revolute">'
+    (tmp_path / "arm.urdf").write_text(arm((joint.format(1), joint.format(1).replace("revolute", "continuous"))))
+    wide = {"j4": {"lower": -7.0, "upper": 7.0}, "j1": {"lower": -9.0, "upper": 9.0}}
+    given = {"robot.posture": {"j1": 4.0, "j4": 5.0}, "robot.limits": wide}
+    agent = agent_of(scenario(tmp_path / "arm.urdf", **given), "robot")
+    limits = agent.limits
+    assert (limits.q_lower[0], limits.q_upper[0]) == pytest.approx((4.0 - np.pi, 4.0 + np.pi), abs=1e-9)
+    assert (limits.q_lower[3], limits.q_upper[3]) == pytest.approx((5.0 - np.pi, 7.0), abs=1e-9)
+    assert (limits.q_lower[1], limits.q_upper[1]) == (-2.5, 2.2)
+    assert agent.posture[[0, 3]] == pytest.approx((4.0, 5.0))
+    assert agent.model.upperPositionLimit == pytest.approx(limits.q_upper)
