@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,8 @@ ROUGH, MOST_ROUGH = (
 )  # cells along a link's largest extent with a point in each, to compare cuts; at most so many
 BOXIER = 0.75  # of a capsule's volume: where boxes are allowed, one that is smaller is taken in its place
 HALVED = 5  # times that a large triangle is cut in four so that points lie all over it
+# Directions to neighbouring cells.
+AROUND = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
 THINNEST = 1e-3  # [m]: no edge of a box is shorter
 
 
@@ -219,7 +221,9 @@ class SolidFit:
 
     def _both(self, one: _Part, other: _Part) -> _Part:
         points = np.concatenate([one.rough, other.rough])
-        points = points[:: -(-len(points) // MOST_ROUGH)]
+        if len(points) > MOST_ROUGH:  # the outermost in some directions, and of the others some
+            outermost = np.argmax(points @ AROUND.T, axis=0)
+            points = np.concatenate([points[outermost], points[:: -(-len(points) // MOST_ROUGH)]])
         return _Part((*one.surfaces, *other.surfaces), points, self._cost(points))
 
     def _solid(self, surface: Surface) -> FittedCapsule | FittedBox:
