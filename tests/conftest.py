@@ -124,6 +124,12 @@ def ur10(solved: Callable[..., Solved], tmp_path_factory: pytest.TempPathFactory
 
 
 @pytest.fixture(scope="session")
+def column_urdf() -> str:
+    """Return the URDF of an arm on a lifting column, which holds at ``tool0``."""
+    return str(_module("robot_lift").column_robot())
+
+
+@pytest.fixture(scope="session")
 def on_a_column(solved: Callable[..., Solved], tmp_path_factory: pytest.TempPathFactory) -> Solved:
     """A person and an arm on a lifting column, which a URDF describes, lift a box."""
     pytest.importorskip("yourdfpy", reason="yourdfpy is in the extra 'robots'")

@@ -75,9 +75,10 @@ def _made_cheap(words: list[str]) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def lab(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def lab(tmp_path_factory: pytest.TempPathFactory, column_urdf: str) -> Path:
     """Run all commands in order, in one folder, solves on a coarse mesh; what they leave is for the other tests."""
     folder, here = tmp_path_factory.mktemp("pages"), Path.cwd()
+    (folder / "my_arm.urdf").write_text(column_urdf, encoding="utf-8")  # a reader's own robot
     os.chdir(folder)
     try:
         for command, page in _commands().items():

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import numpy.typing as npt
@@ -19,14 +19,17 @@ from liftopt.types import Array
 
 CUTS = (0.25, 0.5, 0.75)  # of the extent of a part, where it is cut
 CRUMB = 0.01  # of it: what is smaller goes with what is nearest
-WASTED = 1.2  # of what they were apart: so large a part that is made of two may be
-FREE = 5.0  # of a part so fine that it is not cut, this part may be wasted anyhow
+WASTED = 1.06  # of what they were apart: so large a part that is made of two may be
+WORTH = 1.03  # times as much room as with cuts: solids without any are taken that need no more
+FREE = 10.0  # of a part so fine that it is not cut, this part may be wasted anyhow
 ROUGH, MOST_ROUGH = (
     16,
     700,
 )  # cells along a link's largest extent with a point in each, to compare cuts; at most so many
 BOXIER = 0.75  # of a capsule's volume: where boxes are allowed, one that is smaller is taken in its place
 HALVED = 5  # times that a large triangle is cut in four so that points lie all over it
+# Directions to neighbouring cells.
+AROUND = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if any(way)])
 THINNEST = 1e-3  # [m]: no edge of a box is shorter
 
 
@@ -89,13 +92,6 @@ class Surface:
         """Return what is of one owner."""
         return Surface(self.corners[self.owner == owner], self.owner[self.owner == owner])
 
-    @staticmethod
-    def joined(one: Surface, other: Surface) -> Surface:
-        """Return two as one."""
-        made = Surface(np.concatenate([one.corners, other.corners]), np.concatenate([one.owner, other.owner]))
-        points = np.concatenate([one.rough, other.rough])
-        return made.with_rough(points[:: -(-len(points) // MOST_ROUGH)])
-
     def with_rough(self, points: Array) -> Surface:
         """Return the same, with some of its points that are known already."""
         vars(self)["rough"] = points
@@ -110,15 +106,22 @@ class Surface:
 
     def cut(self, axis: Array, at: float) -> tuple[Surface, Surface] | None:
         """Return what is on the two sides of the plane axis . p = at, or None where one has nothing."""
-        height = self.corners @ axis - at
+        height, rough = self.corners @ axis - at, self.rough @ axis - at
+        # Points near the plane count for both sides, where they are on it.
+        near = np.abs(rough) < np.ptp(self.rough, axis=0).max() / ROUGH
+        rim = self.rough[near] - np.outer(rough[near], axis)
         sides = []
         for sign in (1.0, -1.0):
-            ahead, near = sign * height, self.rough[sign * (self.rough @ axis - at) >= 0.0]
+            ahead = sign * height
             touched = (ahead > 0.0).any(axis=1)
             if not touched.any():
                 return None
             corners, origin = _clipped(self.corners[touched], ahead[touched])
-            sides.append(Surface(corners, self.owner[touched][origin]).with_rough(near))
+            sides.append(
+                Surface(corners, self.owner[touched][origin]).with_rough(
+                    np.concatenate([self.rough[sign * rough >= 0.0], rim])
+                )
+            )
         return sides[0], sides[1]
 
 
@@ -142,17 +145,24 @@ class SolidFit:
         """Return solids that together hold a surface, the largest first, and of what each is mainly."""
         parts = [self._part(surface.of(owner)) for owner in np.unique(surface.owner)]
         room = sum(part.cost for part in parts)
-        parts = self._cut(self._without_crumbs(parts, CRUMB * room))
-        chosen = sorted(self._joined(parts), key=lambda part: -part.cost)
+        parts = self._without_crumbs(parts, CRUMB * room)
+        whole, cut = self._joined(parts), self._joined(self._cut(list(parts)))
+        chosen = cut if WORTH * self._volume(cut) < self._volume(whole) else whole
+        chosen = sorted(chosen, key=lambda part: -part.cost)
         return [(self._solid(part.surface), part.surface.main_owner) for part in chosen]
 
     def _part(self, surface: Surface) -> _Part:
-        return _Part(surface, self._cost(surface.rough))
+        return _Part((surface,), surface.rough, self._cost(surface.rough))
 
     def _cost(self, points: Array) -> float:
         """Return the volume of a solid around points, roughly [m^3]."""
         capsule, box = rough_volumes(points)
         return min(capsule, box / BOXIER) if self.boxes else capsule
+
+    def _volume(self, parts: list[_Part]) -> float:
+        """Return the volume of all solids that parts will have, roughly [m^3]."""
+        both = [rough_volumes(part.rough) for part in parts]
+        return sum(box if self.boxes and box < BOXIER * capsule else capsule for capsule, box in both)
 
     def _without_crumbs(self, parts: list[_Part], crumb: float) -> list[_Part]:
         while len(parts) > 1:
@@ -160,10 +170,9 @@ class SolidFit:
             if parts[0].cost >= crumb:
                 break
             small, *parts = parts
-            middle = small.surface.rough.mean(axis=0)
-            gaps = [np.linalg.norm(part.surface.rough - middle, axis=1).min() for part in parts]
-            near = int(np.argmin(gaps))
-            parts[near] = self._part(Surface.joined(parts[near].surface, small.surface))
+            middle = small.rough.mean(axis=0)
+            near = int(np.argmin([np.linalg.norm(part.rough - middle, axis=1).min() for part in parts]))
+            parts[near] = self._both(parts[near], small)
         return parts
 
     def _cut(self, parts: list[_Part]) -> list[_Part]:
@@ -211,7 +220,11 @@ class SolidFit:
         return list(alive.values())
 
     def _both(self, one: _Part, other: _Part) -> _Part:
-        return self._part(Surface.joined(one.surface, other.surface))
+        points = np.concatenate([one.rough, other.rough])
+        if len(points) > MOST_ROUGH:  # the outermost in some directions, and of the others some
+            outermost = np.argmax(points @ AROUND.T, axis=0)
+            points = np.concatenate([points[outermost], points[:: -(-len(points) // MOST_ROUGH)]])
+        return _Part((*one.surfaces, *other.surfaces), points, self._cost(points))
 
     def _solid(self, surface: Surface) -> FittedCapsule | FittedBox:
         """Return a small solid that holds all of a surface."""
@@ -225,8 +238,17 @@ MOVING, STANDING = SolidFit(4, 3, 1.5e-3, boxes=False), SolidFit(16, 10, 5e-3, b
 
 @dataclass(frozen=True)
 class _Part:
-    surface: Surface
+    """Surfaces that are to have one solid, some points on them, and roughly its volume [m^3]."""
+
+    surfaces: tuple[Surface, ...]
+    rough: Array
     cost: float
+
+    @property
+    def surface(self) -> Surface:
+        """All of them as one."""
+        corners, owners = ([getattr(one, what) for one in self.surfaces] for what in ("corners", "owner"))
+        return Surface(np.concatenate(corners), np.concatenate(owners)).with_rough(self.rough)
 
 
 def _smallest_box(points: Array) -> FittedBox:
