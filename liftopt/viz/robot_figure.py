@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -50,13 +50,17 @@ def figure_of(chain: RobotChain) -> tuple[FigurePiece, ...]:
         return ()
     cell = FINEST
     while (count := sum(len(piece.mesh.triangles) for piece in pieces)) > MOST_TRIANGLES:
-        pieces = [FigurePiece(piece.joint, piece.colour, _fewer(piece.mesh, cell)) for piece in pieces]
+        pieces = [FigurePiece(piece.joint, piece.colour, _fewer(piece.mesh, cell)) for piece in _with_triangles(pieces)]
         cell *= COARSER if count < FAR * MOST_TRIANGLES else COARSER**2
     groups: dict[tuple[int, Colour], list[Mesh]] = {}
-    for piece in pieces:
-        if len(piece.mesh.triangles):
-            groups.setdefault((piece.joint, piece.colour), []).append(creased(piece.mesh))
+    for piece in _with_triangles(pieces):
+        groups.setdefault((piece.joint, piece.colour), []).append(creased(piece.mesh))
     return tuple(FigurePiece(joint, colour, merged(meshes)) for (joint, colour), meshes in groups.items())
+
+
+def _with_triangles(pieces: Iterable[FigurePiece]) -> list[FigurePiece]:
+    """Return the pieces of which something is left: a small one may have gone."""
+    return [piece for piece in pieces if len(piece.mesh.triangles)]
 
 
 def _fewer(mesh: Mesh, cell: float) -> Mesh:

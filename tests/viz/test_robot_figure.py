@@ -91,3 +91,11 @@ def test_light_sees_edges_of_a_box_and_none_on_a_ball() -> None:
     assert len(creased(Mesh(np.asarray(box.vertices), np.asarray(box.faces, np.int64))).vertices) == 24
     smooth = simplified(ball((0.0, 0.0, 0.0), (0.1, 0.1, 0.1)), 1e-4)
     assert len(creased(smooth).vertices) == len(smooth.vertices)
+
+
+@pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
+def test_a_piece_that_is_gone_before_there_are_few_enough_triangles_is_left_out() -> None:
+    """Baxter with its left arm held has pieces so small that nothing is left of them on the way."""
+    known = known_robots()["baxter_right"]
+    found = figure_of(examined_robot(known).chain)
+    assert found and all(len(piece.mesh.triangles) for piece in found)
