@@ -260,3 +260,19 @@ def test_wrong_use_is_refused_in_one_line(words: list[str], said: str, capsys: p
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_planes_have_settled_before_a_lift_is_differentiated() -> None:
+    """Oracle: the lift solved once more, which moves its objective no more, as it did before."""
+    cheap = {"solver.intervals": 14, "solver.starts": 1, "solver.tries": 0}
+    replanner = Replanner()
+    assert replanner.solve(load_scenario("floor_box", cheap)).solved
+    found = replanner.latest
+    assert found is not None and found.problem.planes is not None
+    settled = liftopt.studies.sensitivity._settled(replanner, found)
+    replanner.latest = settled
+    again = replanner.replan(settled.scenario)
+    assert again is not None
+    first, then, after = (figures(each)["objective"] for each in (found, settled, again))
+    assert abs(first - then) > 1e-4 * then
+    assert after == pytest.approx(then, rel=2e-6)

@@ -30,6 +30,9 @@ NEAR = 0.1  # a miss of this share of the reach, or of so many rad, costs a post
 UPRIGHT = 0.5  # an axis with a smaller level part counts as upright
 END = 0.01  # share of a range at either end that no posture is in
 DIGITS = 4  # the last ones differ from processor to processor
+# What an elbow above the line from shoulder to tip by the whole reach is worth: an arm on a stand that reaches over is
+# clear of its stand and of what it holds, one that hangs is not. An arm whose first axis is level hangs as people's do.
+ABOVE, STANDING = 3.0, 0.9
 ROWS = 5  # position and where the tool points; how it is turned about itself is for the grasp to say
 
 
@@ -41,11 +44,20 @@ class _Aim:
         shoulder: (3,) in the world, the point on the first turning axis that is nearest to the second joint.
         axes: (3, 3) rows ahead, left and up, in the world.
         reach: of the tip from the shoulder, the farthest of all candidates [m].
+        above: by how much a posture gains whose elbow is above the line from shoulder to tip, see ``ABOVE``.
     """
 
     shoulder: Array
     axes: Array
     reach: float
+    above: float
+
+    def elbow(self, points: Array, tip: Array) -> float:
+        """Return how far joints (k, 3) are above the line from shoulder to tip in the mean, a share of the reach."""
+        ahead, up = self.axes[0], self.axes[2]
+        share = np.clip((points - self.shoulder) @ ahead / max(float((tip - self.shoulder) @ ahead), 1e-3), 0.0, 1.0)
+        line = self.shoulder + share[:, None] * (tip - self.shoulder)
+        return float(np.mean((points - line) @ up)) / self.reach
 
     def place(self, tip: Array) -> Array:
         """Return the place (3,) within the box that is nearest to a tip."""
@@ -123,7 +135,8 @@ def _aim(model: pin.Model, data: pin.Data, at: int, spread: Array, ahead: Array)
         tips.append(data.oMf[at].translation.copy())
     up = np.array([0.0, 0.0, 1.0])
     reach = float(np.linalg.norm(np.array(tips) - shoulder, axis=1).max())
-    return _Aim(shoulder, np.array([ahead, np.cross(up, ahead), up]), max(reach, 1e-3))
+    above = ABOVE if abs(float(axis @ up)) > STANDING else 0.0
+    return _Aim(shoulder, np.array([ahead, np.cross(up, ahead), up]), max(reach, 1e-3), above)
 
 
 def _seen(model: pin.Model, data: pin.Data, at: int, q: Array, aim: _Aim) -> tuple[Array, Array]:
@@ -161,7 +174,8 @@ def _rank(model: pin.Model, data: pin.Data, at: int, q: Array, lower: Array, upp
     """Return how good a posture is, from 0 on.
 
     The least that the tip moves for a given motion of the joints, in the direction in which it moves least, times the
-    least room of a joint; less far from the middle of the ranges, and where the tool is not where it should be.
+    least room of a joint; less far from the middle of the ranges, where the tool is not where it should be, and where
+    the elbow of an arm on a stand hangs.
     """
     missing, slopes = _seen(model, data, at, q, aim)
     moves = np.linalg.svd(slopes[:ROWS], compute_uv=False)[-1 if len(q) >= ROWS else len(q) - 1]
@@ -171,4 +185,6 @@ def _rank(model: pin.Model, data: pin.Data, at: int, q: Array, lower: Array, upp
     room = float((np.minimum(low, high) / np.minimum(half, ROOM)).min(initial=1.0))
     off = float(np.mean((low / half - 1.0) ** 2)) if free.any() else 0.0
     miss = float(np.abs(missing[:ROWS]).max()) / NEAR
-    return float((1e-3 + moves) * (0.05 + room) / (1.0 + off + 2.0 * miss))
+    points = np.array([data.oMi[i].translation for i in range(2, model.njoints)])
+    elbow = aim.elbow(points, data.oMf[at].translation) if aim.above and len(points) else 0.0
+    return float((1e-3 + moves) * (0.05 + room) / (1.0 + off + 2.0 * miss) * np.exp(aim.above * elbow))
