@@ -13,6 +13,7 @@ import pinocchio as pin
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.robots.grasp_frames import FINGER
+from liftopt.multibody.robots.robot_solids import robot_solids
 from liftopt.multibody.robots.sawyer_description import PAYLOAD
 from liftopt.scenario.build import agent_of, motions_of
 from liftopt.scenario.model import scenario_from_dict
@@ -35,7 +36,9 @@ GRIPPER = {"length": 0.15, "mass": 0.4}
 # A hand whose frame is as near to the last joint [m] holds farther out, by this share of the robot's reach.
 AT_WRIST, FINGERS_SHARE = 0.01, 0.2
 PATIENCE = 60.0  # [s] for all trials together
-MOBILE = "footprint"  # in the name of the base link of a robot that stands on the floor
+# What does not move of a robot that is taller than this stands on the floor itself: a trunk on legs or wheels [m];
+# unless its tool would be lower than that above the floor.
+TALL, LOW = 0.5, 0.4
 SETTLED = 2  # digits of the lengths in the file
 
 
@@ -46,12 +49,12 @@ class _Robot:
     Attributes:
         entries: of its section.
         payload: what it may carry [kg], infinite where that is not known.
-        on_floor: whether it comes with a stand or wheels of its own.
+        own_stand: height of its base where it stands on legs or wheels of its own, None of one without [m].
     """
 
     entries: Mapping[str, Any]
     payload: float
-    on_floor: bool
+    own_stand: float | None
 
     def bears(self, mass: float) -> bool:
         """Whether its payload bears its gripper and half of a box of a mass [kg]."""
@@ -87,7 +90,7 @@ def first_scenario(robot: Mapping[str, Any], name: str, progress: Progress | Non
 def _known(robot: Mapping[str, Any]) -> _Robot:
     section = Robot(**robot)
     if section.model == SAWYER:
-        return _Robot({**robot, "tool": dict(GRIPPER)}, section.payload or PAYLOAD, False)
+        return _Robot({**robot, "tool": dict(GRIPPER)}, section.payload or PAYLOAD, None)
     chosen = chosen_of(section, NAME)
     published = None if chosen.known is None else chosen.known.payload
     payload = section.payload or published or float("inf")
@@ -99,7 +102,8 @@ def _known(robot: Mapping[str, Any]) -> _Robot:
         at_wrist = float(np.linalg.norm(chain.T_last_grasp[:3, 3])) < AT_WRIST
         own = {"length": round(FINGERS_SHARE * chain.reach, SETTLED), "mass": 0.0} if at_wrist else None
     tool = {} if "tool" in robot or own is None else {"tool": dict(own)}
-    return _Robot({**robot, **tool}, payload, MOBILE in chain.base)
+    heights = robot_solids(chain).base[:, 2]
+    return _Robot({**robot, **tool}, payload, -float(heights.min()) if np.ptp(heights) > TALL else None)
 
 
 def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, Any]:
@@ -121,7 +125,9 @@ def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, An
     places = (data.oMf[model.getFrameId(own.hands[0])], data.oMi[1])
     tip, shoulder = (np.asarray(place.translation) - [0.0, 0.0, STAND] for place in places)  # from its base
     half = min(HIGH, 2.0 * share * float(np.linalg.norm(tip - shoulder))) / 2.0
-    stand = 0.0 if robot.on_floor else max(0.0, STAND - float(tip[2]))
+    stand = max(0.0, STAND - float(tip[2]))
+    if robot.own_stand is not None and robot.own_stand + tip[2] > LOW:
+        stand = max(0.0, robot.own_stand)
     middle = float(np.clip(stand + tip[2], LOWEST, HIGHEST))
     x, y = round(target - float(tip[0]), SETTLED), round(-float(tip[1]), SETTLED) + 0.0
     tables["agents"][NAME]["base"] = {"x": x, "y": y, "z": round(stand, SETTLED)}
