@@ -30,9 +30,9 @@ NEAR = 0.1  # a miss of this share of the reach, or of so many rad, costs a post
 UPRIGHT = 0.5  # an axis with a smaller level part counts as upright
 END = 0.01  # share of a range at either end that no posture is in
 DIGITS = 4  # the last ones differ from processor to processor
-# What an elbow above the line from shoulder to tip by the whole reach is worth: an arm on a stand that reaches over is
-# clear of its stand and of what it holds, one that hangs is not. An arm whose first axis is level hangs as people's do.
-ABOVE, STANDING = 3.0, 0.9
+# What an elbow below the line from shoulder to tip by a share of the reach costs: an arm on a stand that reaches over
+# is clear of its stand and of what it holds, one that hangs is not. Where the first axis is level, arms hang as ours do.
+BELOW, STANDING = 3.0, 0.9
 ROWS = 5  # position and where the tool points; how it is turned about itself is for the grasp to say
 
 
@@ -44,13 +44,13 @@ class _Aim:
         shoulder: (3,) in the world, the point on the first turning axis that is nearest to the second joint.
         axes: (3, 3) rows ahead, left and up, in the world.
         reach: of the tip from the shoulder, the farthest of all candidates [m].
-        above: by how much a posture gains whose elbow is above the line from shoulder to tip, see ``ABOVE``.
+        below: what it costs where the elbow is below the line from shoulder to tip, see ``BELOW``.
     """
 
     shoulder: Array
     axes: Array
     reach: float
-    above: float
+    below: float
 
     def elbow(self, points: Array, tip: Array) -> float:
         """Return how far joints (k, 3) are above the line from shoulder to tip in the mean, a share of the reach."""
@@ -135,8 +135,8 @@ def _aim(model: pin.Model, data: pin.Data, at: int, spread: Array, ahead: Array)
         tips.append(data.oMf[at].translation.copy())
     up = np.array([0.0, 0.0, 1.0])
     reach = float(np.linalg.norm(np.array(tips) - shoulder, axis=1).max())
-    above = ABOVE if abs(float(axis @ up)) > STANDING else 0.0
-    return _Aim(shoulder, np.array([ahead, np.cross(up, ahead), up]), max(reach, 1e-3), above)
+    below = BELOW if abs(float(axis @ up)) > STANDING else 0.0
+    return _Aim(shoulder, np.array([ahead, np.cross(up, ahead), up]), max(reach, 1e-3), below)
 
 
 def _seen(model: pin.Model, data: pin.Data, at: int, q: Array, aim: _Aim) -> tuple[Array, Array]:
@@ -186,5 +186,5 @@ def _rank(model: pin.Model, data: pin.Data, at: int, q: Array, lower: Array, upp
     off = float(np.mean((low / half - 1.0) ** 2)) if free.any() else 0.0
     miss = float(np.abs(missing[:ROWS]).max()) / NEAR
     points = np.array([data.oMi[i].translation for i in range(2, model.njoints)])
-    elbow = aim.elbow(points, data.oMf[at].translation) if aim.above and len(points) else 0.0
-    return float((1e-3 + moves) * (0.05 + room) / (1.0 + off + 2.0 * miss) * np.exp(aim.above * elbow))
+    elbow = min(0.0, aim.elbow(points, data.oMf[at].translation)) if aim.below and len(points) else 0.0
+    return float((1e-3 + moves) * (0.05 + room) / (1.0 + off + 2.0 * miss) * np.exp(aim.below * elbow))
