@@ -31,7 +31,7 @@ UPRIGHT = 0.5  # an axis with a smaller level part counts as upright
 END = 0.01  # share of a range at either end that no posture is in
 DIGITS = 4  # the last ones differ from processor to processor
 # What an elbow below the line from shoulder to tip by a share of the reach costs: an arm on a stand that reaches over
-# is clear of its stand and of what it holds, one that hangs is not. Where the first axis is level, arms hang as ours do.
+# is clear of its stand and of what it holds, one that hangs is not. Where the first axis is level, arms hang as ours.
 BELOW, STANDING = 3.0, 0.9
 ROWS = 5  # position and where the tool points; how it is turned about itself is for the grasp to say
 
