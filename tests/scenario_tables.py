@@ -15,7 +15,9 @@ from liftopt.scenario.model import Scenario
 from liftopt.scenario.obstacles import Obstacle
 
 TEAM = {"human": "person", "robot": "robot"}
-LEFT_OUT = ("agents", "grasps", "kind")
+# Of a robot that comes from a file, whose names of joints and links no strategy knows; here all are Sawyer.
+OF_FILES = ("arguments", "grasp_frame", "base_link", "locked", "limits", "posture", "joint_weights", "direction")
+LEFT_OUT = ("agents", "grasps", "kind", "roll_deg", "pitch_deg", *OF_FILES)
 
 
 def tables() -> st.SearchStrategy[dict[str, Any]]:
@@ -38,6 +40,8 @@ def _may_be_left_out(field: FieldInfo) -> bool:
 
 
 def _entry(name: str, field: FieldInfo) -> st.SearchStrategy[Any]:
+    if name == "model":
+        return st.just("sawyer")
     if name == "obstacles":
         return st.lists(section(Obstacle), max_size=2)
     if name == "box" or (name == "position" and field.is_required()):  # of an obstacle
