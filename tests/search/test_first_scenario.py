@@ -28,4 +28,4 @@ def test_its_tool_is_where_the_robot_is_to_hold(name: str) -> None:
     middle = (scenario.task.start.height + scenario.task.end.height) / 2.0
     # A Sawyer's own posture is known; the base is rounded to centimetres.
     np.testing.assert_allclose(tip, [AHEAD + DEPTH, 0.0, middle], rtol=0.0, atol=0.02)
-    assert scenario.task.end.height > scenario.task.start.height + 0.1
+    assert scenario.task.end.height > scenario.task.start.height + 0.05  # the least share of what a child reaches
