@@ -18,6 +18,7 @@ from liftopt.collocation import (
     arm_frames,
     arm_knot,
     arm_numbers,
+    closed_form,
     spatial_symbols,
     standing_hand,
     tree_dynamics,
@@ -25,10 +26,11 @@ from liftopt.collocation import (
 from liftopt.collocation.arm_frames import ArmFrames
 from liftopt.collocation.arm_knot import ArmKnot
 from liftopt.collocation.arm_numbers import numbers_of, placement_numbers
+from liftopt.collocation.closed_form import closed_form_functions
 from liftopt.collocation.dynamics import KnotFunctions, Topology
 from liftopt.types import Array
 
-PARTS = (arm_chain, arm_frames, arm_knot, arm_numbers, spatial_symbols, standing_hand, tree_dynamics)
+PARTS = (arm_chain, arm_frames, arm_knot, arm_numbers, closed_form, spatial_symbols, standing_hand, tree_dynamics)
 
 
 @dataclass(frozen=True)
@@ -82,15 +84,4 @@ def arm_functions(topology: ArmTopology) -> KnotFunctions:
     import casadi as ca
 
     gravity = ca.SX(ca.sparsify(ca.DM(np.asarray(topology.model.gravity.linear))))
-    knot = ArmKnot(topology.kinds, len(topology.entries), gravity)
-    y, p, m, slopes = knot.y, knot.p, knot.m, knot.jacobian()
-    leading, d = ca.SX.sym("slopes", slopes.sparsity()), ca.SX.sym("d", knot.n)
-    rows = leading[: knot.n, :]
-    squares = ca.mtimes(rows.T, ca.repmat(d, 1, y.shape[0]) * rows)
-    return KnotFunctions(
-        value=ca.Function("value", [y, p], ca.cse([ca.densify(knot.value())])),
-        gradient=ca.Function("gradient", [y, p, m], ca.cse([ca.densify(knot.gradient())])),
-        jacobian=ca.Function("jacobian", [y, p], ca.cse([slopes])),
-        curvature=ca.Function("curvature", [y, p, m], ca.cse([knot.curvature()])),
-        squares=ca.Function("squares", [leading, d], [ca.triu(squares)]),
-    )
+    return closed_form_functions(ArmKnot(topology.kinds, len(topology.entries), gravity))

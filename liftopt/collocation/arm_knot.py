@@ -23,7 +23,7 @@ class ArmKnot:
 
     Attributes:
         y, p, m: knot variables, parameters (the period first), weights of the outputs; see ``arm_dynamics``.
-        n: number of joints.
+        n: number of joints, and of the outputs that may enter an objective squared (``squared``).
     """
 
     def __init__(self, kinds: str, numbers: int, gravity: Any) -> None:
@@ -36,7 +36,7 @@ class ArmKnot:
         """
         import casadi as ca
 
-        self.n = len(kinds)
+        self.n = self.squared = len(kinds)
         period, symbols = ca.SX.sym("T"), ca.SX.sym("p", numbers)
         q, dq, ddq = (ca.SX.sym(name, self.n) for name in ("q", "dq", "ddq"))
         self.force, self.moment, self.angles = (ca.SX.sym(name, 3) for name in ("f", "m", "r"))
@@ -92,19 +92,8 @@ class ArmKnot:
         chain, n, hand = self.chain, self.n, self.hand
         found, turn = ca.SX(self.m.shape[0], self.y.shape[0]), hand.turn(hand.aim)
         for j in chain.joints:
-            own, columns, (drag, momentum) = j - 1, self._columns(j), chain.row(j)
-            pushed = self._pressed(j) + ca.cross(hand.axis[j], hand.moment)
-            for k in chain.path(j):
-                above, axis, moved = k - 1, chain.axis[k], chain.moved[k]
-                if k != j:
-                    found[own, above] = (
-                        chain.lifted[k].dot(momentum) + ca.dot(moved.angular, drag) + ca.dot(axis.angular, pushed)
-                    )
-                    found[own, n + above] = 2 * moved.dot(momentum) + ca.dot(axis.angular, drag)
-                    found[own, 2 * n + above] = axis.dot(momentum)
-                for order, column in enumerate(columns):
-                    found[above, order * n + own] = axis.dot(column)
-            reach = self._to_world(hand.reach[j])
+            own, reach = chain.at[j], self._to_world(hand.reach[j])
+            chain.add_slopes(found, j, self._columns(j), self._pressed(j) + ca.cross(hand.axis[j], hand.moment))
             found[own, 3 * n : 3 * n + 3], found[n : n + 3, own] = reach.T, reach
             found[own, 3 * n + 3 : 3 * n + 6] = self._to_world(hand.axis[j]).T
             found[n + COSINE, own] = ca.dot(hand.axis[j], turn)
@@ -118,20 +107,8 @@ class ArmKnot:
         chain, n, hand, size = self.chain, self.n, self.hand, self.y.shape[0]
         found = ca.SX(size, size)
         for j in chain.joints:
-            own, (by_position, by_rate, momentum) = j - 1, self._columns(j)
-            by_velocity, by_acceleration, rates = chain.bend(j)
-            bent = hand.bent(j)
-            for k in chain.path(j):
-                above, axis, moved, weighted = k - 1, chain.axis[k], chain.moved[k], chain.weighted[k]
-                found[above, own] = (
-                    weighted.dot(by_position) + moved.dot(by_velocity) + chain.lifted[k].dot(by_acceleration)
-                    + ca.dot(axis.angular, bent)
-                )  # fmt: skip
-                found[own, n + above] = axis.dot(by_velocity) + 2 * moved.dot(by_acceleration)
-                found[own, 2 * n + above] = axis.dot(by_acceleration)
-                found[above, n + own] = weighted.dot(by_rate) + moved.dot(rates)
-                found[n + above, n + own] = axis.dot(rates)
-                found[above, 2 * n + own] = weighted.dot(momentum)
+            own = chain.at[j]
+            chain.add_bends(found, j, self._columns(j), hand.bent(j))
             found[own, 3 * n : 3 * n + 3] = self._to_world(hand.swing[j]).T
             found[own, 3 * n + 3 : 3 * n + 6] = self._to_world(hand.tilt[j]).T
         found[:n, 3 * n + 6 :] = self._twisted()

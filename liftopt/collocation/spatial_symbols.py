@@ -35,6 +35,20 @@ class Motion:
     angular: Any
     linear: Any
 
+    @staticmethod
+    def rest() -> Motion:
+        """Return the twist of what does not move."""
+        import casadi as ca
+
+        return Motion(ca.SX(3, 1), ca.SX(3, 1))
+
+    @staticmethod
+    def of_joint(axis: Any, origin: Any, slides: bool) -> Motion:
+        """Return the twist of what a joint at an origin carries at a rate of one, along or about an axis (3,)."""
+        import casadi as ca
+
+        return Motion(ca.SX(3, 1), axis) if slides else Motion(axis, ca.cross(origin, axis))
+
     def __add__(self, other: Motion) -> Motion:
         return Motion(self.angular + other.angular, self.linear + other.linear)
 

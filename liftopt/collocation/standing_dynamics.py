@@ -14,7 +14,15 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from liftopt.collocation import spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics
+from liftopt.collocation import (
+    closed_form,
+    spatial_symbols,
+    standing_hand,
+    standing_knot,
+    standing_place,
+    tree_dynamics,
+)
+from liftopt.collocation.closed_form import closed_form_functions
 from liftopt.collocation.dynamics import KnotFunctions, Topology, clean_rotation, symbolic_model
 from liftopt.collocation.standing_knot import StandingKnot
 from liftopt.collocation.standing_place import in_base_axes, place_parameters
@@ -69,7 +77,7 @@ class StandingTopology(WrenchTopology):
         """Return a digest of all that a kernel is generated from; equal signatures share a kernel."""
         digest = hashlib.sha256(Topology.signature(self).encode())
         digest.update(f"{self.trunk} {self.up.tolist()}".encode())
-        for part in (spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics):
+        for part in (closed_form, spatial_symbols, standing_hand, standing_knot, standing_place, tree_dynamics):
             digest.update(Path(str(part.__file__)).read_bytes())
         digest.update(Path(__file__).read_bytes())
         return digest.hexdigest()
@@ -82,20 +90,7 @@ def standing_agent_functions(topology: StandingTopology) -> KnotFunctions:
     (p_world_grasp, f . f, m . m, cosine, f_object, m_object), all as in ``wrench_dynamics``, and force and moment (6,)
     that the ground exerts on all that moves, the grasps' reactions included: about the base's origin, in its axes.
     """
-    import casadi as ca
-
     cpin, model, entries = symbolic_model(topology)
     up = topology.up if topology.trunk else None
     knot = StandingKnot(cpin, model, topology.model, topology.frames, entries, topology.trunk, up)
-    y, p, m = knot.y, knot.p, knot.m
-    slopes = knot.jacobian()
-    leading = ca.SX.sym("slopes", slopes.sparsity())
-    rows, d = leading[: knot.squared, :], ca.SX.sym("d", knot.squared)
-    squares = ca.mtimes(rows.T, ca.repmat(d, 1, y.shape[0]) * rows)
-    return KnotFunctions(
-        value=ca.Function("value", [y, p], ca.cse([ca.densify(knot.value())])),
-        gradient=ca.Function("gradient", [y, p, m], ca.cse([ca.densify(knot.gradient())])),
-        jacobian=ca.Function("jacobian", [y, p], ca.cse([slopes])),
-        curvature=ca.Function("curvature", [y, p, m], ca.cse([knot.curvature()])),
-        squares=ca.Function("squares", [leading, d], [ca.triu(squares)]),
-    )
+    return closed_form_functions(knot)

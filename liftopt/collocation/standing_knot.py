@@ -102,7 +102,7 @@ class StandingKnot:
             by_position, *by_rates = tree.slope(j)
             by_position = sum((hand.slope(j) for hand in self._carried(j)), by_position)
             for order, slope in enumerate((by_position, *by_rates)):
-                found[order * self.n + self._at(j)] = slope
+                found[order * self.n + tree.at[j]] = slope
         for i, hand in enumerate(self.hands):
             whole, (force, moment) = tree.weight[hand.joint], self._wrench(i)
             others += ca.dot(force, self._to_world(whole.at(hand.point))) + ca.dot(
@@ -120,21 +120,11 @@ class StandingKnot:
         tree, n = self.tree, self.n
         found = ca.SX(self.m.shape[0], self.y.shape[0])
         for j in tree.joints:
-            own, columns = self._at(j), self._columns(j)
-            drag, momentum = tree.row(j)
+            own, columns = tree.at[j], self._columns(j)
             pushed = self._pressed(j)
             for hand in self._carried(j):
                 pushed += ca.cross(tree.axis[j].angular, hand.moment)
-            for k in tree.path(j):
-                above, axis, moved = self._at(k), tree.axis[k], tree.moved[k]
-                if k != j:
-                    found[own, above] = (
-                        tree.lifted[k].dot(momentum) + ca.dot(moved.angular, drag) + ca.dot(axis.angular, pushed)
-                    )
-                    found[own, n + above] = 2 * moved.dot(momentum) + ca.dot(axis.angular, drag)
-                    found[own, 2 * n + above] = axis.dot(momentum)
-                for order, column in enumerate(columns):
-                    found[above, order * n + own] = axis.dot(column)
+            tree.add_slopes(found, j, columns, pushed)
             for order, column in enumerate(columns):
                 found[self.ground :, order * n + own] = self._at_base(column)
         if self.squared > n:
@@ -149,7 +139,7 @@ class StandingKnot:
         hand, first, force = self.hands[i], self.squared + HAND_OUTPUTS * i, self._force(i)
         turn = hand.turn(hand.aim)
         for j in self.tree.path(hand.joint):
-            own, reach = self._at(j), self._to_world(hand.reach[j])
+            own, reach = self.tree.at[j], self._to_world(hand.reach[j])
             axis = self.tree.axis[j].angular
             found[own, force : force + 3], found[own, force + 3 : force + 6] = reach.T, self._to_world(axis).T
             found[first : first + 3, own] = reach
@@ -168,27 +158,15 @@ class StandingKnot:
         tree, n, size = self.tree, self.n, self.y.shape[0]
         found, others = ca.SX(size, size), ca.SX(0)
         for j in tree.joints:
-            own, (by_position, by_rate, momentum) = self._at(j), self._columns(j)
-            by_velocity, by_acceleration, rates = tree.bend(j)
             bent = sum((hand.bent(j) for hand in self._carried(j)), ca.SX(3, 1))
-            for k in tree.path(j):
-                above, axis, moved, weighted = self._at(k), tree.axis[k], tree.moved[k], tree.weighted[k]
-                found[above, own] = (
-                    weighted.dot(by_position) + moved.dot(by_velocity) + tree.lifted[k].dot(by_acceleration)
-                    + ca.dot(axis.angular, bent)
-                )  # fmt: skip
-                found[own, n + above] = axis.dot(by_velocity) + 2 * moved.dot(by_acceleration)
-                found[own, 2 * n + above] = axis.dot(by_acceleration)
-                found[above, n + own] = weighted.dot(by_rate) + moved.dot(rates)
-                found[n + above, n + own] = axis.dot(rates)
-                found[above, 2 * n + own] = weighted.dot(momentum)
+            tree.add_bends(found, j, self._columns(j), bent)
         by_angles = ca.horzsplit(ca.jacobian(ca.vec(self.attitude), self.angles))
         for i, hand in enumerate(self.hands):
             force, angles = self._force(i), size - len(by_angles)
             others += ca.dot(self.weights[i][OWN], self._own(i))
             turns = ca.horzcat(*(hand.alike * hand.turn(self._to_hub(ca.reshape(aim, 3, 3))) for aim in by_angles))
             for j in tree.path(hand.joint):
-                own = self._at(j)
+                own = tree.at[j]
                 found[own, force : force + 3] = self._to_world(hand.swing[j]).T
                 found[own, force + 3 : force + 6] = self._to_world(hand.tilt[j]).T
                 found[own, angles:] += ca.mtimes(tree.axis[j].angular.T, turns)
@@ -233,9 +211,6 @@ class StandingKnot:
 
     def _carried(self, j: int) -> list[Hand]:
         return [hand for hand in self.hands if j in hand.reach]
-
-    def _at(self, j: int) -> int:
-        return int(self.structure.joints[j].idx_v)
 
     def _force(self, i: int) -> int:
         return 3 * self.n + WRENCH_SIZE * i

@@ -14,6 +14,7 @@ they are seen by an observer who moves as that point does at this moment, which 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,8 @@ class Tree:
     """The tree at one knot. Lists are by joint; entry 0 is the base, and of sums that of all that moves.
 
     Attributes:
-        joints: their numbers; ``parents`` the joints that carry them.
+        n: number of joints; ``joints`` their numbers; ``parents`` the joints that carry them.
+        at: places of their rates.
         placed: frames of the links.
         axis: twist S of what joint j carries at a rate of one; ``moved`` is its rate where it moves with the link
             before, ``weighted`` where that moves by the weights; ``lifted`` is its second rate, by gravity too.
@@ -50,28 +52,39 @@ class Tree:
             rates: (n,) joint positions, velocities and accelerations.
             weights: (n,) of the torques, (3,) of the force and (3,) of the moment at the base.
         """
-        self.parents, self.joints = [int(parent) for parent in structure.parents], range(1, structure.njoints)
-        hub = _hub(structure)
-        self.placed = _placed(cpin, model, structure, hub, rates[0])
-        self.axis = [_rest(), *(_axis(structure.joints[j], self.placed[j]) for j in self.joints)]
-        self._add_motion(structure, hub, model.gravity.linear, rates[1:], weights)
-        self._add_sums(structure, model)
-
-    def _add_motion(
-        self, structure: pin.Model, hub: int, gravity: Any, rates: tuple[Any, Any], weights: tuple[Any, Any, Any]
-    ) -> None:
         import casadi as ca
 
-        at, base, (v, a), (torques, force, moment) = _index(structure), self.placed[0], rates, weights
+        q, *others = rates
+        self.n, self.joints = int(structure.nv), range(1, structure.njoints)
+        self.parents, self.at = [int(parent) for parent in structure.parents], _index(structure)
+        hub = _hub(structure)
+        self.placed = _placed(cpin, model, structure, hub, q)
+        self.axis = [Motion.rest(), *(_axis(structure.joints[j], self.placed[j]) for j in self.joints)]
+        (torques, force, moment), base = weights, self.placed[0]
         turn = ca.mtimes(base.rotation, moment)
         self.weight = [Motion(turn, ca.mtimes(base.rotation, force) + ca.cross(base.origin, turn))]
-        self.moved, self.lifted, self.weighted = [_rest()], [_rest()], [_rest()]
-        self._acceleration = [Motion(ca.SX(3, 1), -ca.mtimes(base.rotation, gravity))]
+        self._add_motion(self.parents[hub], ca.mtimes(base.rotation, model.gravity.linear), (*others, torques))
+        bodies = {j: _body(model.inertias[j], self.placed[j]) for j in self.joints if structure.inertias[j].mass}
+        self._add_sums(bodies)
+
+    def _add_motion(self, still: int, gravity: Any, rates: tuple[Any, Any, Any]) -> None:
+        """Add what links do; ``weight`` holds the base's already.
+
+        Args:
+            still: joint to whose link the hub is fixed.
+            gravity: (3,) along the hub's axes.
+            rates: (n,) joint velocities and accelerations, and weights of the torques.
+        """
+        import casadi as ca
+
+        at, (v, a, torques) = self.at, rates
+        self.moved, self.lifted, self.weighted = [Motion.rest()], [Motion.rest()], [Motion.rest()]
+        self._acceleration = [Motion(ca.SX(3, 1), -gravity)]
         # The hub is at rest for the observer there, and the links before it move back.
-        back, drift = ca.SX(3, 1), {}
-        for j in reversed([0, *self.path(self.parents[hub])]):
+        back, drift = ca.SX(3, 1), {0: ca.SX(3, 1)}
+        for j in reversed(self.path(still)):
             drift[j] = back
-            back = back - self.axis[j].linear * v[at[j]]
+            back = drift[self.parents[j]] = back - self.axis[j].linear * v[at[j]]
         self._velocity = [Motion(ca.SX(3, 1), drift[0])]
         for j in self.joints:
             axis, i = self.axis[j], self.parents[j]
@@ -84,10 +97,11 @@ class Tree:
             self._acceleration.append(self._acceleration[i] + axis * a[at[j]] + moved * v[at[j]])
             self.weight.append(self.weight[i] + axis * torques[at[j]])
 
-    def _add_sums(self, structure: pin.Model, model: Any) -> None:
+    def _add_sums(self, bodies: dict[int, Mass]) -> None:
+        """Add the sums over links; ``bodies`` are those that have a mass, as the hub sees them, by joint."""
         import casadi as ca
 
-        none, count = ca.SX(3, 1), structure.njoints
+        none, count = ca.SX(3, 1), len(self.parents)
         self.carried = [Mass(ca.SX(0), none, ca.SX(3, 3))] * count
         self.load, self.momentum = [Force(none, none)] * count, [Force(none, none)] * count
         self.turning, self.weight_turning = [Turning(ca.SX(3, 3), none)] * count, [Turning(ca.SX(3, 3), none)] * count
@@ -97,8 +111,7 @@ class Tree:
         )  # fmt: skip
         for j in reversed(self.joints):
             twist, weight = self._velocity[j], self.weight[j]
-            if structure.inertias[j].mass:
-                body = _body(model.inertias[j], self.placed[j])
+            if body := bodies.get(j):
                 turning = body.turning(twist)
                 load = body.times(self._acceleration[j]) + twist.cross_force(body.times(twist))
                 power = turning.transposed_times(weight)
@@ -125,6 +138,29 @@ class Tree:
         position, S . drag + 2 S' . inertia by the velocity, S . inertia by the acceleration.
         """
         return self.turning[j].transposed_times(self.axis[j]), self.carried[j].times(self.axis[j])
+
+    def add_slopes(self, found: Any, j: int, columns: Sequence[Force], pushed: Any) -> None:
+        """Write the slopes of torques by joint j and those above it, and of these by j.
+
+        Args:
+            found: slopes, torques first, by positions, velocities and accelerations; changed.
+            j: the joint.
+            columns: ``column`` (j), and what the hands' forces add to the first.
+            pushed: (3,) moment by which the load on joint j changes where a joint above turns what the hands hold.
+        """
+        import casadi as ca
+
+        own, n, (drag, momentum) = self.at[j], self.n, self.row(j)
+        for k in self.path(j):
+            above, axis, moved = self.at[k], self.axis[k], self.moved[k]
+            if k != j:
+                found[own, above] = (
+                    self.lifted[k].dot(momentum) + ca.dot(moved.angular, drag) + ca.dot(axis.angular, pushed)
+                )
+                found[own, n + above] = 2 * moved.dot(momentum) + ca.dot(axis.angular, drag)
+                found[own, 2 * n + above] = axis.dot(momentum)
+            for order, column in enumerate(columns):
+                found[above, order * n + own] = axis.dot(column)
 
     def slope(self, j: int) -> tuple[Any, Any, Any]:
         """Return the slopes of the weighted sum by position, velocity and acceleration of joint j."""
@@ -154,11 +190,30 @@ class Tree:
             turning.times(axis) * -1 + dragged * 2,
         )
 
+    def add_bends(self, found: Any, j: int, columns: Sequence[Force], bent: Any) -> None:
+        """Write the second derivatives of the weighted sum by joint j and those above it.
 
-def _rest() -> Motion:
-    import casadi as ca
+        Args:
+            found: they, by positions, velocities and accelerations, the upper triangle; changed.
+            j: the joint.
+            columns: as ``add_slopes`` has them.
+            bent: (3,) moment that the hands add, see ``standing_hand.Hand.bent``.
+        """
+        import casadi as ca
 
-    return Motion(ca.SX(3, 1), ca.SX(3, 1))
+        own, n, (by_position, by_rate, momentum) = self.at[j], self.n, columns
+        by_velocity, by_acceleration, rates = self.bend(j)
+        for k in self.path(j):
+            above, axis, moved, weighted = self.at[k], self.axis[k], self.moved[k], self.weighted[k]
+            found[above, own] = (
+                weighted.dot(by_position) + moved.dot(by_velocity) + self.lifted[k].dot(by_acceleration)
+                + ca.dot(axis.angular, bent)
+            )  # fmt: skip
+            found[own, n + above] = axis.dot(by_velocity) + 2 * moved.dot(by_acceleration)
+            found[own, 2 * n + above] = axis.dot(by_acceleration)
+            found[above, n + own] = weighted.dot(by_rate) + moved.dot(rates)
+            found[n + above, n + own] = axis.dot(rates)
+            found[above, 2 * n + own] = weighted.dot(momentum)
 
 
 def _index(structure: pin.Model) -> list[int]:
@@ -208,7 +263,7 @@ def _axis(joint: Any, placed: Placed) -> Motion:
         axis = ca.mtimes(placed.rotation, ca.SX(ca.sparsify(ca.DM(joint.extract().axis))))
     else:
         axis = placed.rotation[:, "XYZ".index(kind[-1])]
-    return Motion(ca.SX(3, 1), axis) if kind.startswith("P") else Motion(axis, ca.cross(placed.origin, axis))
+    return Motion.of_joint(axis, placed.origin, kind.startswith("P"))
 
 
 def _body(inertia: Any, placed: Placed) -> Mass:
