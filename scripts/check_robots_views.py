@@ -22,7 +22,8 @@ from matplotlib.figure import Figure
 
 import liftopt as lo
 from liftopt.multibody.dh import rotation_z
-from liftopt.multibody.robots.catalogue import examined_robot, known_robots
+from liftopt.multibody.robots.catalogue import known_robots
+from liftopt.multibody.robots.chosen_robot import chosen_robot
 from liftopt.multibody.robots.known_robot import KnownRobot
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.robot_solids import robot_solids
@@ -63,7 +64,7 @@ def view_of_robot(
     solids: bool = False,
 ) -> Image:  # fmt: skip
     """Return a picture (H, W, 3) of a known robot, at ease and on what it would stand on; it prints figures on it."""
-    chain = examined_robot(known).chain
+    chain = chosen_robot(known.name).examination().chain
     base = robot_solids(chain).base[:, 2]
     T_world_base = rotation_z(-np.radians(known.front_deg))
     T_world_base[2, 3] = -base.min() if np.ptp(base) > STANDS else HEIGHT - base.min()

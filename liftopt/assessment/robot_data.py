@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from liftopt.assessment.who import Who
 from liftopt.multibody.robots.catalogue import known_robots
-from liftopt.multibody.robots.data_finding import alike
+from liftopt.multibody.robots.data_finding import alike, told_together
 from liftopt.multibody.robots.known_robot import KnownRobot
 from liftopt.multibody.robots.sawyer_description import SOURCE
 from liftopt.multibody.trajectory import AgentTrajectory
@@ -71,14 +71,14 @@ def data_findings(robot: AgentTrajectory, who: Who, data: RobotData) -> Iterator
             f"In the {who.told} {data.springs}: its motors' torques are smaller than those that are computed.",
             robot.name,
         )
-    for first, *others in alike(robot.remarks):
+    for group in alike(robot.remarks):
+        first, others = group[0], group[1:]
         severity = INFO if first.code in HARMLESS else SEVERITIES[first.severity]
-        also = f" (and {', '.join(other.where for other in others)})" if others else ""
         where = first.where + (f" and {len(others)} more" if others else "")
         yield Finding(
             f"{ROBOT}.data",
             severity,
             TITLES[severity].format(where=where),
-            f"Data of the {who.told}: {first.told}{also}.",
+            f"Data of the {who.told}: {told_together(group)}.",
             robot.name,
         )

@@ -25,7 +25,6 @@ from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.solvers.ipopt import Ipopt, IpoptOptions
 from liftopt.collocation.solvers.simd_nlp import simd_nlp
 from liftopt.collocation.task import OBJECT_COORDINATES
-from liftopt.multibody.joint_units import units_of
 from liftopt.types import Array
 
 # Price of a gap of 1 m, of a share of a limit, and of 1 m outside a half-space, too near to another body or off the
@@ -244,10 +243,9 @@ class SoftProblem(Problem):
         linear = block.name == "velocity" and block.who not in names
         units = ["m/s" if linear and label in LINEAR else unit for label in block.labels]
         if block.name in ("torque", "velocity") and block.who in names:
-            agent = self.team.agents[names.index(block.who)]
-            slides = dict(zip(list(agent.model.names)[1:], agent.sliding, strict=True))
-            of_joints = [units_of(bool(slides[label])) for label in block.labels]
-            units = [own.tau if block.name == "torque" else own.v for own in of_joints]
+            of_joints = self.team.agents[names.index(block.who)].units
+            own = [of_joints[label] for label in block.labels]
+            units = [each.tau if block.name == "torque" else each.v for each in own]
         return [
             Violation(
                 block.name, who[j], float(phase[k]) * task.duration, float(amounts[k, j]), float(share[k, j]), units[j],

@@ -14,6 +14,7 @@ from liftopt.errors import InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from liftopt.multibody.robots.chosen_robot import ChosenRobot
     from liftopt.multibody.robots.examination import Examination
     from liftopt.multibody.robots.known_robot import KnownRobot
 
@@ -66,19 +67,12 @@ def robots(args: argparse.Namespace) -> int:
                 raise InputError(f"--{option.replace('_', '-')}", value, "needs a ROBOT")
         write(_list_json() if args.json else captured(_print_list))
         return DONE
-    from liftopt.multibody.robots.catalogue import known_or_path
-    from liftopt.multibody.robots.public_description import is_public, public_description
-
-    word, given = args.robot, dict(_pairs("--arg", args.arg))
-    if is_public(word):
-        public = public_description(word)
-        word, given = str(public.path), {**public.arguments, **given}
-    known = known_or_path(word)
-    found = _examined(known, args, given)
+    chosen = _chosen(args)
+    known, found = chosen.known, chosen.examination()
     status = NOT_SOLVED if found.refused else DONE
-    written = _written_scenario(args, known, found) if args.scenario and status == DONE else None
+    written = _written_scenario(args, chosen) if args.scenario and status == DONE else None
     if args.json:
-        name = None if isinstance(known, Path) else known.name
+        name = None if known is None else known.name
         told = {"known_as": name, **found.plain(), "scenario": written, "exit_status": status}
         write(json.dumps(told, indent=2, allow_nan=False) + "\n")
     else:
@@ -88,42 +82,42 @@ def robots(args: argparse.Namespace) -> int:
     return status
 
 
-def _examined(known: KnownRobot | Path, args: argparse.Namespace, given: dict[str, str]) -> Examination:
-    from liftopt.multibody.robots.catalogue import examined_robot
-    from liftopt.multibody.robots.examination import examined
-    from liftopt.multibody.robots.read_robot import read_robot
+def _chosen(args: argparse.Namespace) -> ChosenRobot:
+    from liftopt.multibody.robots.catalogue import known_robots
+    from liftopt.multibody.robots.chosen_robot import chosen_robot
 
-    locked = {name: _number("--lock", name, value) for name, value in _pairs("--lock", args.lock)}
-    if not isinstance(known, Path):
-        for option, said in (("--grasp-frame", args.grasp_frame), ("--base", args.base), ("--arg", args.arg)):
-            if said:
-                raise InputError(option, said, f"goes with a file; of {known.name} it is known")
-        if locked:
-            raise InputError("--lock", args.lock, f"goes with a file; of {known.name} it is known")
-        return examined_robot(known)
-    description = read_robot(known, arguments=given)
-    return examined(description, grasp_frame=args.grasp_frame, base=args.base, locked=locked)
+    arguments, locked = dict(_pairs("--arg", args.arg)), _locked(args)
+    if args.robot in known_robots():
+        for key in ("grasp_frame", "base", "arg", "lock"):
+            if said := getattr(args, key):
+                raise InputError(f"--{key.replace('_', '-')}", said, f"goes with a file; of {args.robot} it is known")
+    return chosen_robot(
+        args.robot, arguments=arguments, grasp_frame=args.grasp_frame, base_link=args.base, locked=locked
+    )
 
 
-def _written_scenario(args: argparse.Namespace, known: KnownRobot | Path, found: Examination) -> str:
-    """Write a scenario of the robot as it was examined, and return where it is."""
+def _locked(args: argparse.Namespace) -> dict[str, float]:
+    return {name: _number("--lock", name, value) for name, value in _pairs("--lock", args.lock)}
+
+
+def _written_scenario(args: argparse.Namespace, chosen: ChosenRobot) -> str:
+    """Write a scenario of the robot as it was chosen, and return where it is."""
     import tomli_w
 
     from liftopt.commands.terminal import progress_line
     from liftopt.files.new_file import write_new
+    from liftopt.multibody.robots.public_description import is_public
     from liftopt.search.first_scenario import first_scenario
 
-    chain = found.chain
-    by_path = isinstance(known, Path) and known.name == Path(args.robot).name
-    model = str(known.absolute()) if isinstance(known, Path) and by_path else args.robot
-    entries: dict[str, Any] = {"model": model, "grasp_frame": args.grasp_frame, "base_link": args.base}
-    entries |= {"locked": {name: float(value) for name, value in _pairs("--lock", args.lock)}}
+    entries: dict[str, Any] = {"grasp_frame": args.grasp_frame, "base_link": args.base, "locked": _locked(args)}
     entries |= {"arguments": dict(_pairs("--arg", args.arg))}
-    robot = {key: value for key, value in entries.items() if value}
+    by_name = chosen.known is not None or is_public(args.robot)
+    model = args.robot if by_name else str(Path(args.robot).absolute())
+    robot = {"model": model} | {key: value for key, value in entries.items() if value}
     with progress_line() as progress:
         made = first_scenario(robot, Path(args.scenario).stem, progress)
     head = (
-        f"# A person and {chain.description.name} lift a box: a scenario to start from.\n"
+        f"# A person and {chosen.description.name} lift a box: a scenario to start from.\n"
         "# SI units; radians unless the key says otherwise.\n\n"
     )
     write_new("--scenario", Path(args.scenario), head + tomli_w.dumps(made))
@@ -186,17 +180,17 @@ def _print_list(console: Console) -> None:
     console.print(told, markup=False, highlight=False, soft_wrap=True)
 
 
-def _print(found: Examination, known: KnownRobot | Path, console: Console) -> None:
+def _print(found: Examination, known: KnownRobot | None, console: Console) -> None:
     from rich.table import Table
 
-    from liftopt.multibody.robots.data_finding import alike
+    from liftopt.multibody.robots.data_finding import alike, told_together
 
     def say(text: str) -> None:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     chain = found.chain
-    if isinstance(known, Path):
-        say(f"{chain.description.name}, from {known}")
+    if known is None:
+        say(f"{chain.description.name}, from {chain.description.source}")
     else:
         say(f"{known.name}: {known.title}, {known.maker}" + ("" if known.path is None else f", from {known.path}"))
         if known.payload is not None and known.payload_source is not None:
@@ -216,7 +210,6 @@ def _print(found: Examination, known: KnownRobot | Path, console: Console) -> No
             *("none" if n is None else f"{n:.4g} {unit}" for n, unit in zip(numbers, units, strict=True)),
         )
     console.print(table)
-    for first, *others in alike(found.findings):
-        also = f" (and {', '.join(other.where for other in others)})" if others else ""
-        say(f"{HEADS[first.severity]}: {first.told}{also}")
+    for group in alike(found.findings):
+        say(f"{HEADS[group[0].severity]}: {told_together(group)}")
     say("It cannot lift with these data." if found.refused else "It can lift with these data.")

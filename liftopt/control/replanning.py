@@ -22,7 +22,7 @@ from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.carried_planes import carried_planes
+from liftopt.search.carried_planes import with_planes_of
 from liftopt.search.make_clear import Clearer
 from liftopt.search.mesh_accuracy import estimate
 from liftopt.search.optimum_on_mesh import planes_of
@@ -102,11 +102,9 @@ class Replanner:
             return None
         if last.problem.planes is not None and scenario.limits.clearance is not None:
             renewed = problem.apart(planes_of(self._cache, last, scenario, problem))
-            if not renewed.same_structure(last.problem):  # more of the solids' corners come near now
-                solids = self._cache.solids(last.scenario, last.problem.team)
-                onto = self._cache.solids(scenario, problem.team)
-                renewed = problem.apart(carried_planes(last.problem.planes, solids, onto))
-            problem = renewed
+            # Where more of the solids' corners come near now, the optimum is none of the renewed problem.
+            fits = renewed.same_structure(last.problem)
+            problem = renewed if fits else with_planes_of(self._cache, last, scenario, problem)
         if not problem.same_structure(last.problem):
             return None
         solver = self._cache.solver(problem, scenario, scenario.solver.name, self._progress)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
+from liftopt.multibody.joint_units import JointUnits, units_of
 from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.types import Array
 
@@ -257,6 +258,12 @@ class Agent:
     def sliding(self) -> npt.NDArray[np.bool_]:
         """(all joints,) True for those that slide, whose position is in m and whose effort is in N; others turn."""
         return np.array([joint.shortname().startswith("JointModelP") for joint in list(self.model.joints)[1:]])
+
+    @property
+    def units(self) -> dict[str, JointUnits]:
+        """Units of the joints that are not locked, by name."""
+        slides = dict(zip(list(self.model.names)[1:], self.sliding, strict=True))
+        return {name: units_of(bool(slides[name])) for name in self.moving_joints}
 
     @property
     def T_world_base(self) -> Array:

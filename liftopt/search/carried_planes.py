@@ -6,7 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from liftopt.collocation.problem import Problem
 from liftopt.collocation.separating_planes import SeparatingPlanes, Separation
+from liftopt.scenario.model import Scenario
+from liftopt.search.cache import SolverCache
+from liftopt.search.candidate import Candidate
 from liftopt.search.team_solids import TeamSolids
 from liftopt.types import Array
 
@@ -23,6 +27,22 @@ def carried_planes(planes: SeparatingPlanes, solids: TeamSolids, onto: TeamSolid
     wanted = [part.part for part in planes.parts]
     parts = tuple(part for part in onto.parts if part.part in wanted)
     return SeparatingPlanes(parts, tuple(_carried(s, number, solids, onto) for s in planes.separations))
+
+
+def with_planes_of(cache: SolverCache, candidate: Candidate, scenario: Scenario, problem: Problem) -> Problem:
+    """Return the problem of a scenario with the planes of a candidate, if that one has some; their rows are the same.
+
+    Args:
+        cache: where solids come from.
+        candidate: of a team of the same kind, on the problem's mesh.
+        scenario: of the problem.
+        problem: without planes.
+    """
+    planes = candidate.problem.planes
+    if planes is None:
+        return problem
+    solids = cache.solids(candidate.scenario, candidate.problem.team)
+    return problem.apart(carried_planes(planes, solids, cache.solids(scenario, problem.team)))
 
 
 def _carried(rows: Separation, number: dict[str, int], solids: TeamSolids, onto: TeamSolids) -> Separation:

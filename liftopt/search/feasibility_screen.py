@@ -11,7 +11,6 @@ from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.task import OBJECT_COORDINATES
-from liftopt.multibody.joint_units import units_of
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.search.inverse_kinematics import InverseKinematics
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
@@ -134,17 +133,9 @@ def _range_of_motion(
     q = reach.coordinates[closed, :-OBJECT_SIZE]
     beyond = np.maximum(0.0, np.maximum(lower - q, q - upper))
     least = beyond[np.argmin(beyond.sum(axis=1))]
-    joints = [
-        (name, units_of(bool(slides)))
-        for agent in problem.team.agents
-        for name, slides in zip(list(agent.model.names)[1:], agent.sliding, strict=True)
-        if name in agent.moving_joints
-    ]
-    parts = [
-        f"{joints[j][0]} {joints[j][1].factor * least[j]:.0f} {joints[j][1].shown}"
-        for j in np.argsort(-least)
-        if least[j] > NOTICEABLE
-    ]
+    joints = [joint for agent in problem.team.agents for joint in agent.units.items()]
+    told = [(*joints[j], least[j]) for j in np.argsort(-least) if least[j] > NOTICEABLE]
+    parts = [f"{name} {units.factor * much:.0f} {units.shown}" for name, units, much in told]
     return f" (with {', '.join(parts)} beyond the range of motion it would reach)" if parts else ""
 
 

@@ -22,7 +22,7 @@ from liftopt.scenario.robot_agents import chosen_of
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.search.cache import SolverCache
 from liftopt.search.feasibility_screen import screen_ends
-from liftopt.types import Progress
+from liftopt.types import Array, Progress
 
 NAME = "robot"
 AHEAD, DEPTH = 0.40, 0.45  # where the person holds, and how long the box is [m]: as in Table 5 of the paper
@@ -50,11 +50,15 @@ class _Robot:
         entries: of its section.
         payload: what it may carry [kg], infinite where that is not known.
         own_stand: height of its base where it stands on legs or wheels of its own, None of one without [m].
+        tip: (3,) its tool's tip in its resting posture, from its base, world axes [m].
+        reach: of the tip there, from the first joint [m].
     """
 
     entries: Mapping[str, Any]
     payload: float
     own_stand: float | None
+    tip: Array
+    reach: float
 
     def bears(self, mass: float) -> bool:
         """Whether its payload bears its gripper and half of a box of a mass [kg]."""
@@ -78,7 +82,7 @@ def first_scenario(robot: Mapping[str, Any], name: str, progress: Progress | Non
     for mass, share in product(MASSES, SHARES):
         if deadline.passed or not known.bears(mass):
             continue
-        tables = _tables(known, name, mass, share)
+        tables = _placed(known, name, mass, share)
         scenario = scenario_from_dict(tables)
         reasons, _ = screen_ends(cache.problem(scenario, motions_of(scenario), progress), 0, deadline)
         if not reasons:
@@ -90,7 +94,8 @@ def first_scenario(robot: Mapping[str, Any], name: str, progress: Progress | Non
 def _known(robot: Mapping[str, Any]) -> _Robot:
     section = Robot(**robot)
     if section.model == SAWYER:
-        return _Robot({**robot, "tool": dict(GRIPPER)}, section.payload or PAYLOAD, None)
+        entries = {**robot, "tool": dict(GRIPPER)}
+        return _Robot(entries, section.payload or PAYLOAD, None, *_at_rest(entries))
     chosen = chosen_of(section, NAME)
     published = None if chosen.known is None else chosen.known.payload
     payload = section.payload or published or float("inf")
@@ -102,29 +107,41 @@ def _known(robot: Mapping[str, Any]) -> _Robot:
         at_wrist = float(np.linalg.norm(chain.T_last_grasp[:3, 3])) < AT_WRIST
         own = {"length": round(FINGERS_SHARE * chain.reach, SETTLED), "mass": 0.0} if at_wrist else None
     tool = {} if "tool" in robot or own is None else {"tool": dict(own)}
-    heights = robot_solids(chain).base[:, 2]
-    return _Robot({**robot, **tool}, payload, -float(heights.min()) if np.ptp(heights) > TALL else None)
+    heights, entries = robot_solids(chain).base[:, 2], {**robot, **tool}
+    own_stand = -float(heights.min()) if np.ptp(heights) > TALL else None
+    return _Robot(entries, payload, own_stand, *_at_rest(entries))
 
 
-def _tables(robot: _Robot, name: str, mass: float, share: float) -> dict[str, Any]:
-    """Return a scenario in which the robot's tool, in its resting posture, is at the middle of the lift."""
-    human = {"kind": "person", "stature": 1.75, "mass": 75.0, "sex": "male"}
-    tables: dict[str, Any] = {
-        "schema": 2,
-        "name": name,
-        "duration": 2.0,
-        "agents": {"human": human, NAME: {"kind": "robot", **robot.entries, "base": {"x": 0.0, "z": STAND}}},
-        "object": {"name": "box", "mass": mass, "depth": DEPTH, "width": 0.3, "height": 0.02},
-        "task": {"standing_distance": 2.0} | {end: {"x": 0.0, "z": 1.0} for end in ("start", "end")},
-        "objective": {"preset": "natural"},
-    }
-    own, target = agent_of(scenario_from_dict(tables), NAME), AHEAD + DEPTH
+def _at_rest(entries: Mapping[str, Any]) -> tuple[Array, float]:
+    """Return where a robot's tip is in its resting posture, and how far it reaches there, see ``_Robot``."""
+    tables = _tables(entries, "at rest", MASSES[0])
+    own = agent_of(scenario_from_dict(tables), NAME)
     model = own.reduced()
     data = model.createData()
     pin.framesForwardKinematics(model, data, own.posture)
     places = (data.oMf[model.getFrameId(own.hands[0])], data.oMi[1])
     tip, shoulder = (np.asarray(place.translation) - [0.0, 0.0, STAND] for place in places)  # from its base
-    half = min(HIGH, 2.0 * share * float(np.linalg.norm(tip - shoulder))) / 2.0
+    return tip, float(np.linalg.norm(tip - shoulder))
+
+
+def _tables(robot: Mapping[str, Any], name: str, mass: float) -> dict[str, Any]:
+    """Return a scenario in which the robot stands at the origin, and no lift is meant yet."""
+    human = {"kind": "person", "stature": 1.75, "mass": 75.0, "sex": "male"}
+    return {
+        "schema": 2,
+        "name": name,
+        "duration": 2.0,
+        "agents": {"human": human, NAME: {"kind": "robot", **robot, "base": {"x": 0.0, "z": STAND}}},
+        "object": {"name": "box", "mass": mass, "depth": DEPTH, "width": 0.3, "height": 0.02},
+        "task": {"standing_distance": 2.0} | {end: {"x": 0.0, "z": 1.0} for end in ("start", "end")},
+        "objective": {"preset": "natural"},
+    }
+
+
+def _placed(robot: _Robot, name: str, mass: float, share: float) -> dict[str, Any]:
+    """Return a scenario in which the robot's tool, in its resting posture, is at the middle of the lift."""
+    tables, tip, target = _tables(robot.entries, name, mass), robot.tip, AHEAD + DEPTH
+    half = min(HIGH, 2.0 * share * robot.reach) / 2.0
     stand = max(0.0, STAND - float(tip[2]))
     if robot.own_stand is not None and robot.own_stand + tip[2] > LOW:
         stand = max(0.0, robot.own_stand)

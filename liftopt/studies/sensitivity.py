@@ -26,7 +26,7 @@ from liftopt.multibody.trajectory import limit_share
 from liftopt.scenario.model import Scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.carried_planes import carried_planes
+from liftopt.search.carried_planes import with_planes_of
 from liftopt.solution.checks import FINER
 from liftopt.solution.grasp_loads import shares
 from liftopt.studies.parameters import Parameter, changed, parameters_of
@@ -253,11 +253,8 @@ class _Differences:
 
     def _problem(self, scenario: Scenario) -> Problem:
         """Return a changed problem, whose bodies are kept apart by the same planes."""
-        problem, planes = self.cache.problem(scenario, self.candidate.spline), self.candidate.problem.planes
-        if planes is None:
-            return problem
-        solids = self.cache.solids(self.candidate.scenario, self.candidate.problem.team)
-        return problem.apart(carried_planes(planes, solids, self.cache.solids(scenario, problem.team)))
+        problem = self.cache.problem(scenario, self.candidate.spline)
+        return with_planes_of(self.cache, self.candidate, scenario, problem)
 
     def _sides(self, parameter: Parameter, step: float, tangent: Tangent) -> _Sides | str:
         """Return the figures of the lift solved again on both sides, or why they cannot be had."""

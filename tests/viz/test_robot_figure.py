@@ -10,7 +10,8 @@ pytest.importorskip("yourdfpy")
 from scipy.spatial import cKDTree
 
 from liftopt.multibody.dh import rotation_z
-from liftopt.multibody.robots.catalogue import examined_robot, known_robots
+from liftopt.multibody.robots.catalogue import known_robots
+from liftopt.multibody.robots.chosen_robot import chosen_robot
 from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.viz.robot_figure import MOST_TRIANGLES, figure_of
@@ -37,7 +38,7 @@ def test_meshes_are_where_the_urdf_has_them(name: str, rng: np.random.Generator)
         locked=known.locked,
     )  # fmt: skip
     q = rng.uniform(agent.limits.q_lower, agent.limits.q_upper)
-    figure = figure_of(examined_robot(known).chain)
+    figure = figure_of(chosen_robot(known.name).examination().chain)
     assert 1000 < sum(len(piece.mesh.triangles) for piece in figure) <= MOST_TRIANGLES
     drawn = [body.mesh for body in robot_bodies(agent, figure, q)]
     robot = yourdfpy.URDF.load(
@@ -61,7 +62,8 @@ def test_a_picture_of_a_robot_alone_shows_it_and_without_meshes_its_solids() -> 
         known.description(), name="ann", T_world_base=np.eye(4), base=known.base, grasp_frame=known.grasp_frame
     )
     with_meshes, plain = (
-        robot_picture(agent, figure, size=(60, 60)) for figure in (figure_of(examined_robot(known).chain), ())
+        robot_picture(agent, figure, size=(60, 60))
+        for figure in (figure_of(chosen_robot(known.name).examination().chain), ())
     )
     for image in (with_meshes, plain):
         assert image.shape == (60, 60, 3)
@@ -97,5 +99,5 @@ def test_light_sees_edges_of_a_box_and_none_on_a_ball() -> None:
 def test_a_piece_that_is_gone_before_there_are_few_enough_triangles_is_left_out() -> None:
     """Baxter with its left arm held has pieces so small that nothing is left of them on the way."""
     known = known_robots()["baxter_right"]
-    found = figure_of(examined_robot(known).chain)
+    found = figure_of(chosen_robot(known.name).examination().chain)
     assert found and all(len(piece.mesh.triangles) for piece in found)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from liftopt.multibody.robots.catalogue import known_or_path
 from liftopt.multibody.robots.description import RobotDescription
-from liftopt.multibody.robots.examination import Examination, examined
+from liftopt.multibody.robots.examination import Examination, examined, with_springs
 from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.multibody.robots.known_robot import KnownRobot
 from liftopt.multibody.robots.public_description import is_public, public_description
@@ -40,13 +40,14 @@ class ChosenRobot:
 
     def examination(self) -> Examination:
         """Return what is noticed about its data; raises ``InputError`` as ``examined``."""
-        return examined(
+        found = examined(
             self.description,
             grasp_frame=self.grasp_frame,
             base=self.base_link,
             locked=self.locked,
             limits=self.limits,
         )
+        return found if self.known is None or not self.known.springs else with_springs(found, self.known.springs)
 
 
 def chosen_robot(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -63,6 +63,12 @@ def alike(findings: Iterable[DataFinding]) -> list[list[DataFinding]]:
     for finding in findings:
         groups.setdefault((finding.code, finding.message), []).append(finding)
     return list(groups.values())
+
+
+def told_together(findings: Sequence[DataFinding]) -> str:
+    """Return findings that are ``alike`` in one line."""
+    first, *others = findings
+    return first.told + (f" (and {', '.join(other.where for other in others)})" if others else "")
 
 
 def _plain(value: object) -> Any:

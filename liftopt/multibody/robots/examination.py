@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from liftopt.errors import NO_VALUE, InputError
@@ -16,7 +16,7 @@ from liftopt.multibody.robots.grasp_frames import grasp_candidates, rivals
 from liftopt.multibody.robots.limit_findings import limit_findings
 from liftopt.multibody.robots.mass_findings import mass_findings
 from liftopt.multibody.robots.solid_findings import solid_findings
-from liftopt.multibody.robots.weight_findings import weight_findings
+from liftopt.multibody.robots.weight_findings import WEIGHT, weight_findings
 
 AMBIGUOUS = "grasp.ambiguous"  # which of several hands it holds with is for the user to say
 
@@ -104,6 +104,14 @@ def examined(
     if not any(one.severity == "refused" for one in found):
         found.extend(weight_findings(chain))
     return Examination(chain, tuple(sorted(found, key=lambda one: SEVERITIES.index(one.severity))))
+
+
+def with_springs(found: Examination, springs: str) -> Examination:
+    """Return what is noticed about a robot with springs, told in words, in place of motors too weak for its weight."""
+    fix = "the torques of its motors are smaller than those that are computed"
+    told = DataFinding("weight.springs", "warned", "weight", NO_VALUE, springs, fix)
+    order = [*(one for one in found.findings if one.code != WEIGHT), told]
+    return replace(found, findings=tuple(sorted(order, key=lambda one: SEVERITIES.index(one.severity))))
 
 
 def refuse(found: Examination, source: str) -> None:

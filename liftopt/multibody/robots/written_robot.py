@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import pinocchio as pin
 
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Agent, Grasp, JointLimits
+from liftopt.multibody.joint_units import SLIDES
 from liftopt.multibody.robots.resting_posture import resting_posture
 from liftopt.multibody.robots.robot_urdf import own_joint
 from liftopt.multibody.urdf import load_model
 from liftopt.types import Array
-
-SLIDES = "JointModelP"
 
 
 def written_robot(
@@ -51,7 +49,7 @@ def written_robot(
         tau_upper=np.array(model.effortLimit),
     )
     chosen = np.full(model.nq, np.nan)
-    for i, value in _placed(model, name, "posture", posture or {}):
+    for i, value in _placed(list(model.names)[1:], name, "posture", posture or {}):
         low, high = limits.q_lower[i], limits.q_upper[i]
         if not low <= value <= high:
             joint = next(own for own in posture or {} if own_joint(name, own) == model.names[i + 1])
@@ -60,7 +58,7 @@ def written_robot(
     resting = np.where(np.isfinite(chosen), chosen, (limits.q_lower + limits.q_upper) / 2.0)
     if ahead is not None and not np.isfinite(chosen).all():
         resting = resting_posture(model, f"{name}_grasp", limits, ahead, chosen)
-    return Agent(
+    agent = Agent(
         name=name,
         kind="robot",
         urdf=text,
@@ -71,28 +69,26 @@ def written_robot(
         limits=limits,
         posture=resting,
         shares_kernels=True,
-        joint_weights=_weights(model, name, joint_weights or {}, sliding),
     )
+    return with_joint_weights(agent, joint_weights or {}, sliding)
 
 
-def with_joint_weights(agent: Agent, joint_weights: Mapping[str, float]) -> Agent:
-    """Return an agent whose joints' squared torques have these factors, by the names without the agent's."""
-    if not joint_weights:
-        return agent
-    return replace(agent, joint_weights=_weights(agent.reduced(), agent.name, joint_weights, 1.0))
+def with_joint_weights(agent: Agent, joint_weights: Mapping[str, float], sliding: float = 1.0) -> Agent:
+    """Return an agent whose joints' squared torques have these factors, by the names without the agent's.
 
-
-def _weights(model: pin.Model, name: str, given: Mapping[str, float], sliding: float) -> Array | None:
-    slides = [joint.shortname().startswith(SLIDES) for joint in list(model.joints)[1:]]
-    factors = np.where(slides, sliding, 1.0)
-    for i, value in _placed(model, name, "joint_weights", given):
+    Args:
+        agent: any.
+        joint_weights: factors, of other joints 1.
+        sliding: that of joints that slide, beside their own.
+    """
+    factors = np.array([sliding if units is SLIDES else 1.0 for units in agent.units.values()])
+    for i, value in _placed(agent.moving_joints, agent.name, "joint_weights", joint_weights):
         factors[i] *= value
-    return None if (factors == 1.0).all() else factors
+    return agent if (factors == 1.0).all() else replace(agent, joint_weights=factors)
 
 
-def _placed(model: pin.Model, name: str, key: str, given: Mapping[str, float]) -> Iterable[tuple[int, float]]:
+def _placed(names: Sequence[str], name: str, key: str, given: Mapping[str, float]) -> Iterable[tuple[int, float]]:
     """Give the number of each joint that is spoken of, and its value."""
-    names = list(model.names)[1:]
     for own, value in given.items():
         if own_joint(name, own) not in names:
             known = ", ".join(joint.removeprefix(f"{name}_") for joint in names)

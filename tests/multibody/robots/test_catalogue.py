@@ -10,7 +10,8 @@ import pytest
 pytest.importorskip("yourdfpy")
 
 from liftopt.errors import InputError
-from liftopt.multibody.robots.catalogue import examined_robot, known_or_path, known_robots
+from liftopt.multibody.robots.catalogue import known_or_path, known_robots
+from liftopt.multibody.robots.chosen_robot import chosen_robot
 from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer_description import JOINTS
@@ -24,7 +25,7 @@ KNOWN = known_robots()
 @pytest.mark.parametrize("name", KNOWN)
 def test_every_known_robot_can_lift_as_it_is_known(name):
     known = KNOWN[name]
-    found = examined_robot(known)
+    found = chosen_robot(known.name).examination()
     assert not found.refused
     assert 5 <= len(found.chain.links) <= 8
     assert 0.2 < found.chain.reach < 2.0
@@ -47,13 +48,13 @@ def test_payloads_have_a_source_and_names_are_those_that_can_be_typed():
 
 def test_sawyer_is_known_without_any_file():
     limits = [joint.effort for joint in JOINTS]
-    assert [joint.effort for joint in examined_robot(KNOWN["sawyer"]).chain.joints] == limits
+    assert [joint.effort for joint in chosen_robot("sawyer").examination().chain.joints] == limits
 
 
 @pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed (it is in 'test')")
 def test_placeholders_in_public_files_are_told():
     """The right arm of Alex has 1000 Nm where the left one has 80 and 150; iCub's joints turn at 100 rad/s."""
-    found = {name: examined_robot(KNOWN[name]) for name in KNOWN}
+    found = {name: chosen_robot(name).examination() for name in KNOWN}
     codes = {name: {finding.code for finding in examination.findings} for name, examination in found.items()}
     assert "effort.large" in codes["alex_right"] and "effort.large" not in codes["alex_left"]
     assert "velocity.large" in codes["icub_right"]
