@@ -9,13 +9,11 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.errors import InputError
-from liftopt.multibody.agent import Agent, Grasp, JointLimits
+from liftopt.multibody.agent import Agent, Grasp, JointLimits, slides
 from liftopt.multibody.robots.resting_posture import resting_posture
 from liftopt.multibody.robots.robot_urdf import own_joint
 from liftopt.multibody.urdf import load_model
 from liftopt.types import Array
-
-SLIDES = "JointModelP"
 
 
 def written_robot(
@@ -83,8 +81,7 @@ def with_joint_weights(agent: Agent, joint_weights: Mapping[str, float]) -> Agen
 
 
 def _weights(model: pin.Model, name: str, given: Mapping[str, float], sliding: float) -> Array | None:
-    slides = [joint.shortname().startswith(SLIDES) for joint in list(model.joints)[1:]]
-    factors = np.where(slides, sliding, 1.0)
+    factors = np.where(slides(model), sliding, 1.0)
     for i, value in _placed(model, name, "joint_weights", given):
         factors[i] *= value
     return None if (factors == 1.0).all() else factors
