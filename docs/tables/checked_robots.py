@@ -10,13 +10,12 @@ from tables import table
 
 HERE = Path(__file__).parent
 HEAD = ("robot", "joints", "outcome", "first, again [s]", "torque", "speed", "apart", "data: warned of", "also")
-NOT_HERE = {"solved": "lifts"}
 LONGEST = 160  # characters of a reason
 
 
 def checked_robots() -> str:
     """Return what came of the robots that are known by name."""
-    return table(HEAD, [_cells(row, row["name"]) for row in _rows("checked_robots.csv")])
+    return table(HEAD, [(f"`{row['name']}`, {row['maker']}", *_cells(row)) for row in _rows("checked_robots.csv")])
 
 
 def checked_table1() -> str:
@@ -26,7 +25,7 @@ def checked_table1() -> str:
     lines = []
     for row in _rows("checked_table1.csv"):
         robot = of[row["name"]]
-        lines.append((robot["of"], f"{robot['maker']} {row['name']}", robot["source"], *_cells(row, "")[1:]))
+        lines.append((robot["of"], f"{robot['maker']} {row['name']}", robot["source"], *_cells(row)))
     return table(("in Table 1", "robot", "description", *HEAD[1:]), lines)
 
 
@@ -35,15 +34,15 @@ def _rows(name: str) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def _cells(row: dict[str, str], name: str) -> tuple[str, ...]:
-    outcome = NOT_HERE.get(row["outcome"], row["outcome"])
+def _cells(row: dict[str, str]) -> tuple[str, ...]:
+    """Return what came of a robot, in the columns of ``HEAD`` after the first."""
+    outcome = row["outcome"]
     if len(outcome) > LONGEST:
         outcome = outcome[:LONGEST].rsplit(" ", 1)[0] + " ..."
-    if row["outcome"] == "solved":
-        outcome = f"{outcome} {float(row['box_kg']):g} kg from {row['from_m']} to {row['to_m']} m"
+    if outcome == "solved":
+        outcome = f"lifts {float(row['box_kg']):g} kg from {row['from_m']} to {row['to_m']} m"
     torque = f"{row['torque_percent']} %, {row['torque_joint']}" if row["torque_percent"] else ""
     return (
-        f"`{name}`, {row['maker']}",
         row["joints"],
         outcome,
         f"{row['first_s']}, {row['again_s']}" if row["again_s"] else "",

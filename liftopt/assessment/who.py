@@ -14,6 +14,7 @@ from liftopt.solution.finding import PERSON, ROBOT
 
 SUBJECTS = {"person": PERSON, "robot": ROBOT}
 HANDS = {PERSON: "hand", ROBOT: "gripper"}
+NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 class Named(Protocol):
@@ -106,3 +107,8 @@ def listed(names: Iterable[str]) -> str:
     """Return ``"anna"``, ``"anna and ben"``, ``"anna, ben and left"``."""
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else last
+
+
+def in_words(count: int) -> str:
+    """Return a small count as a word, ``"six"``, and a larger one in digits."""
+    return NUMBERS[count] if count < len(NUMBERS) else str(count)

@@ -257,7 +257,7 @@ class Agent:
     @property
     def sliding(self) -> npt.NDArray[np.bool_]:
         """(all joints,) True for those that slide, whose position is in m and whose effort is in N; others turn."""
-        return np.array([joint.shortname().startswith("JointModelP") for joint in list(self.model.joints)[1:]])
+        return slides(self.model)
 
     @property
     def units(self) -> dict[str, JointUnits]:
@@ -320,3 +320,8 @@ class LiftedObject:
                 "turn the body's frame so that this is one of its axes"
             )
         return 3 + int(along[0])
+
+
+def slides(model: pin.Model) -> npt.NDArray[np.bool_]:
+    """Return (n,) which joints of a model slide; the others turn."""
+    return np.array([joint.shortname().startswith("JointModelP") for joint in list(model.joints)[1:]])

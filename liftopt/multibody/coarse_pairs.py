@@ -12,6 +12,7 @@ import coal
 import numpy as np
 
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.coal_shape import coal_shape
 from liftopt.multibody.poses import joint_placements
 from liftopt.multibody.robots.evenly_spread import evenly_spread
 from liftopt.multibody.solids import Solid
@@ -32,7 +33,7 @@ def coarse_pairs(agent: Agent, pairs: Sequence[tuple[Solid, Solid]]) -> set[tupl
     placed = joint_placements(agent.reduced(), postures, joints)
     places = np.stack([placed[:, joints.index(solid.joint)] @ solid.T_joint_solid for solid in solids], axis=1)
     around = np.array([np.linalg.norm(solid.size) / 2.0 + solid.radius for solid in solids])
-    shapes = [coal.Box(*solid.size) if solid.kind == "box" else coal.Capsule(*solid.size) for solid in solids]
+    shapes = [coal_shape(solid) for solid in solids]
     request, result, found = coal.DistanceRequest(), coal.DistanceResult(), set()
     for one, other in pairs:
         i, j = number[id(one)], number[id(other)]

@@ -145,12 +145,7 @@ def _at_joint(data: pin.Data, one: Solid, other: Solid, path: Sequence[int]) -> 
 
 def _gap(solid: Solid, T_world_joint: Array, point: Array) -> float:
     """Return how far a point in the world is from a capsule or box [m], 0 within it."""
-    rotation, origin = T_world_joint[:3, :3], T_world_joint[:3, 3]
-    return max(_off(solid, rotation.T @ (point - origin)) - solid.radius, 0.0)
-
-
-def _off(solid: Solid, point: Array) -> float:
-    """Return how far a point in the frame of a solid's joint is from a capsule's axis, or from a box [m]."""
-    own = solid.T_joint_solid[:3, :3].T @ (point - solid.T_joint_solid[:3, 3])
+    T_world_solid = T_world_joint @ solid.T_joint_solid
+    own = T_world_solid[:3, :3].T @ (point - T_world_solid[:3, 3])
     half = np.array(solid.size) / 2.0 if solid.kind == "box" else np.array([0.0, 0.0, solid.size[1] / 2.0])
-    return float(np.linalg.norm(own - np.clip(own, -half, half)))
+    return max(float(np.linalg.norm(own - np.clip(own, -half, half))) - solid.radius, 0.0)

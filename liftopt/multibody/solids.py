@@ -114,7 +114,7 @@ def _solids(owner: str, urdf: str, model: pin.Model) -> tuple[Solid, ...]:
         for name, shape in shapes.items():
             if name in ends:
                 continue
-            T_joint_solid = frame.placement.homogeneous @ _placement(shape.find("origin"))
+            T_joint_solid = frame.placement.homogeneous @ placement_of(shape.find("origin"))
             part = name.removesuffix(COLLISION).replace("_", " ")
             found.append(Solid(owner, part, frame.parentJoint, T_joint_solid, *_geometry(owner, part, shape)))
     return tuple(found)
@@ -126,19 +126,21 @@ def _geometry(owner: str, part: str, shape: Element) -> tuple[SolidKind, tuple[f
         if geometry is None:
             continue
         if tag == "box":
-            return "box", _numbers(geometry.get("size", ""))
-        (radius,) = _numbers(geometry.get("radius", ""))
-        return "capsule", (radius, *_numbers(geometry.get("length", "0.0")))
+            return "box", numbers_in(geometry.get("size", ""))
+        (radius,) = numbers_in(geometry.get("radius", ""))
+        return "capsule", (radius, *numbers_in(geometry.get("length", "0.0")))
     raise ModelError(f"{owner}: the collision shape of {part} must be a box, a cylinder or a sphere")
 
 
-def _placement(origin: Element | None) -> Array:
+def placement_of(origin: Element | None) -> Array:
+    """Return the placement (4, 4) that an ``<origin>`` of a URDF says; none there is at the frame itself."""
     placement = np.eye(4)
     if origin is not None:
-        placement[:3, :3] = pin.rpy.rpyToMatrix(np.array(_numbers(origin.get("rpy", "0 0 0"))))
-        placement[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
+        placement[:3, :3] = pin.rpy.rpyToMatrix(np.array(numbers_in(origin.get("rpy", "0 0 0"))))
+        placement[:3, 3] = numbers_in(origin.get("xyz", "0 0 0"))
     return placement
 
 
-def _numbers(text: str) -> tuple[float, ...]:
+def numbers_in(text: str) -> tuple[float, ...]:
+    """Return the numbers of an attribute of a URDF."""
     return tuple(map(float, text.split()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from xml.etree import ElementTree
@@ -73,6 +74,11 @@ class MovingLink:
     bounds: JointBounds
     body: BodyInertia
     shapes: tuple[Shape, ...] = ()
+
+
+def plain_name(name: str) -> str:
+    """Return a name with ``_`` for each character that names in liftopt's URDFs do not have."""
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", name)
 
 
 def joint_name(chain: str, row: str) -> str:

@@ -8,9 +8,9 @@ import coal
 import numpy as np
 
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.coal_shape import coal_shape
 from liftopt.multibody.poses import joint_placements, object_placements
 from liftopt.multibody.solid_pairs import SolidPair
-from liftopt.multibody.solids import Solid
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory
 from liftopt.solution.clearance import Clearance, KindClearance, PairClearance
 from liftopt.solution.clearance_bounds import Indices, PlacedSolids, sphere_bounds, tight_bounds
@@ -70,7 +70,7 @@ class _Coal:
 
     def __init__(self, placed: PlacedSolids, one: Indices, other: Indices) -> None:
         self._placed, self._one, self._other = placed, one.tolist(), other.tolist()
-        self._shapes = [_shape(solid) for solid in placed.solids]
+        self._shapes = [coal_shape(solid) for solid in placed.solids]
         self._measures: dict[int, coal.ComputeDistance] = {}
         self._places: dict[tuple[int, int], coal.Transform3s] = {}
         self._known: dict[tuple[int, int], tuple[float, Array, Array]] = {}
@@ -95,12 +95,6 @@ class _Coal:
             place = coal.Transform3s(self._placed.rotation[solid, k], self._placed.position[solid, k])
             self._places[solid, k] = place
         return place
-
-
-def _shape(solid: Solid) -> coal.ShapeBase:
-    if solid.kind == "half-space":
-        return coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)
-    return coal.Box(*solid.size) if solid.kind == "box" else coal.Capsule(*solid.size)
 
 
 def _over_time(ask: _Coal, pair: Indices, k: Indices, lower: Array, count: int) -> tuple[Array, Indices, Array]:

@@ -21,7 +21,7 @@ from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.examination import examined
 from liftopt.multibody.robots.read_robot import read_robot
 from liftopt.multibody.robots.robot_urdf import own_joint, turned
-from liftopt.scenario.build import agents_of
+from liftopt.scenario.build import agent_of
 from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_defaults import SAWYER, is_file
 from liftopt.solution.solution import Solution
@@ -46,12 +46,12 @@ def figures_of(solution: Solution, meshes: Meshes = False) -> Figures:
         InputError: a file that was asked for cannot be read, or is of another robot.
     """
     found: Figures = {}
-    for agent in agents_of(solution.scenario, solution.urdfs):
-        robot = solution.scenario.agents[agent.name]
+    for name, robot in solution.scenario.agents.items():
         if isinstance(robot, Robot) and robot.model != SAWYER:
+            agent = agent_of(solution.scenario, name, solution.urdfs)
             chain = _known_chain(robot, agent) if robot.model in known_robots() else _chain(robot, agent, meshes)
             if chain is not None:
-                found[agent.name] = figure_of(chain)
+                found[name] = figure_of(chain)
     return found
 
 

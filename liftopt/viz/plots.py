@@ -16,6 +16,7 @@ from liftopt.multibody.agent import Kind
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.solution.solution import Solution
 from liftopt.viz import FORMATS
+from liftopt.viz.own_meshes import figures_of
 from liftopt.viz.plots_clearance import clearance
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_effort import posture_score, strength_used
@@ -219,7 +220,7 @@ def write_plots(solution: Solution, out: Path, formats: Iterable[str] = FORMATS)
     """
     try:
         out.mkdir(parents=True, exist_ok=True)
-        lift, files = Lift.of(solution), []
+        lift, files = Lift.of(solution, figures_of(solution)), []
         for plot in plots_of(lift):
             figure = drawn(plot, lift)
             for kind in formats:

@@ -47,7 +47,7 @@ def snapshots(lift: Lift) -> Figure:
     figure.subplots_adjust(left=0.005, right=0.995, top=0.9, bottom=0.13, wspace=0.02)
     panels = figure.subplots(1, len(MOMENTS))
     frames = [round(moment * (len(solution.time) - 1)) for moment in MOMENTS]
-    cast = Cast(solution, playback_at(lift.knots, solution.time[frames]), "/lift")
+    cast = Cast(solution, playback_at(lift.knots, solution.time[frames]), "/lift", figures=lift.figures)
     facing = stand_opposite(solution.scenario)
     camera = _camera(cast, SIDE if facing else OBLIQUE)
     key = _key_force(max(float(np.linalg.norm(agent.grasp_force, axis=2).max()) for agent in solution.agents))

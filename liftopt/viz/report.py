@@ -23,7 +23,8 @@ from liftopt.solution.checks import TOUCH
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
-from liftopt.viz.own_meshes import Meshes
+from liftopt.viz.own_meshes import Meshes, figures_of
+from liftopt.viz.playback import playback_of
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report_agents import bodies_words, force_rows, means_words, reported, subject_words, team_words
 from liftopt.viz.report_clearance import clearance_rows
@@ -31,7 +32,8 @@ from liftopt.viz.report_figures import inline_figures, section_figures
 from liftopt.viz.report_section import ReportSection
 from liftopt.viz.report_tables import Headline, check_rows, scenario_rows, source_rows
 from liftopt.viz.robot_words import data_words, models_words
-from liftopt.viz.viewer_page import playback_page
+from liftopt.viz.scene import Cast
+from liftopt.viz.viewer_page import page_of
 from liftopt.viz.who import stand_opposite
 
 CSS = "report.css"
@@ -76,7 +78,7 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = (), *, m
 
     Robots' own ``meshes`` are looked for as ``figures_of`` has it.
     """
-    lift = Lift.of(solution)
+    lift = Lift.of(solution, figures_of(solution, meshes))
     summary, task = summary_dict(solution), solution.scenario.task
     by_grasps = isinstance(task.start, GraspPlace) and isinstance(task.end, GraspPlace)
     figures = inline_figures(lift)
@@ -92,7 +94,7 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = (), *, m
         "headlines": _headlines(solution),
         "figures": {name: {"svg": Markup(figure.svg), "caption": figure.caption} for name, figure in figures.items()},
         "sections": sections,
-        "playback": playback_page(solution, meshes=meshes),
+        "playback": page_of([Cast(solution, playback_of(solution), "/lift", figures=lift.figures)]),
         "people": [reported(lift, agent) for agent in lift.dense.persons],
         "robots": [reported(lift, agent) for agent in lift.dense.robots],
         "team": team_words(solution),

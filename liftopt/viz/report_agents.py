@@ -130,7 +130,7 @@ def team_words(solution: Solution) -> str:
     text = listed(words)
     if len(solution.agents) == 2:
         first, second = (base_of(agent)[:2, 3] for agent in agents_of(solution.scenario, solution.urdfs))
-        text += f", {round(float(np.hypot(*(second - first))), 6):g} m apart,"
+        text += f", {round(float(np.hypot(*(second - first))), 3):g} m apart,"
     return text[0].upper() + text[1:]
 
 

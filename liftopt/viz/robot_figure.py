@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from liftopt.errors import InputError
 from liftopt.multibody.robots.carried_links import carried_links
 from liftopt.multibody.robots.chain import RobotChain
-from liftopt.multibody.robots.link_surfaces import shape_triangles
-from liftopt.multibody.robots.mesh_file import Triangles, read_mesh
+from liftopt.multibody.robots.link_surfaces import mesh_pieces, shape_triangles
+from liftopt.multibody.robots.mesh_file import Triangles
 from liftopt.multibody.robots.robot_shape import MeshFile, RobotShape
 from liftopt.multibody.robots.robot_urdf import turned
 from liftopt.types import Array
@@ -84,18 +83,11 @@ def _drawn(shape: RobotShape, read: Known) -> Iterator[tuple[Colour, Mesh]]:
         if corners is not None:
             yield shape.colour or GREY, _outward(corners)
     else:
-        for piece in _triangles(shape.mesh, shape.size, read):
+        if (shape.mesh, shape.size) not in read:
+            read[shape.mesh, shape.size] = mesh_pieces(shape)
+        for piece in read[shape.mesh, shape.size]:
             mesh = Mesh(piece.vertices, piece.triangles).seen_from(shape.placement)
             yield piece.colour or shape.colour or GREY, mesh
-
-
-def _triangles(file: MeshFile, scale: tuple[float, ...], read: Known) -> tuple[Triangles, ...]:
-    if (file, scale) not in read:
-        try:
-            read[file, scale] = () if file.path is None else read_mesh(file.path, scale, y_up=file.y_up)
-        except InputError:
-            read[file, scale] = ()
-    return read[file, scale]
 
 
 def _outward(corners: Array) -> Mesh:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from liftopt.assessment.who import listed, who_is
+from liftopt.assessment.who import in_words, listed, who_is
 from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.trajectory import AgentTrajectory
 from liftopt.scenario.model import Scenario
@@ -13,9 +13,7 @@ from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.viz.who import is_sawyer, robot_of
 
-NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-AN = ("a", "e", "i", "o", "x")  # begin a title that is read with a vowel first; UR is not
-SPELT_AN = ("SO-",)
+AN = (*"aeioAEIO", "x", "SO-")  # begin a title that is read with a vowel first; UR is not
 OF_TABLE = "the signs of the paper's Table 3, with the manufacturer's joint names"
 OF_URDF = "the signs and by the names of its URDF"
 
@@ -31,8 +29,7 @@ def robot_title(robot: Robot) -> str:
 def a_robot(robot: Robot) -> str:
     """Return ``"a UR10 (Universal Robots)"``, ``"an iCub ..."``."""
     title = robot_title(robot)
-    article = "an" if title.startswith(SPELT_AN) or (title[0].lower() in AN and not title.startswith("X")) else "a"
-    return f"{article} {title}"
+    return f"{'an' if title.startswith(AN) else 'a'} {title}"
 
 
 def joint_words(scenario: Scenario, robot: AgentTrajectory) -> str:
@@ -57,8 +54,7 @@ def models_words(scenario: Scenario, robots: Sequence[AgentTrajectory]) -> str:
         own = robot_of(scenario, robot)
         what = "a Rethink Sawyer" if own.model == SAWYER else a_robot(own)
         subject = who_is(robot, robots).the
-        count = len(robot.moving_joints)
-        number = NUMBERS[count] if count < len(NUMBERS) else str(count)
+        number = in_words(len(robot.moving_joints))
         words.append(f"{subject[0].upper()}{subject[1:]} is {what} with {number} joints on a fixed base. ")
     return "".join(words)
 

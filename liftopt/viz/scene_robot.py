@@ -12,7 +12,7 @@ import pinocchio as pin
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.robots.carried_links import BASE
 from liftopt.multibody.robots.robot_stand import STAND
-from liftopt.multibody.solids import END_SPHERES
+from liftopt.multibody.solids import END_SPHERES, numbers_in, placement_of
 from liftopt.viz.base import base_link_of
 from liftopt.viz.robot_figure import FigurePiece
 from liftopt.viz.scene_mesh import Mesh, ball, block, capsule, cylinder
@@ -61,13 +61,10 @@ def _shapes(link: Element) -> Iterator[tuple[str, Colour, Mesh]]:
 
 
 def _mesh(visual: Element, with_ends: bool) -> Mesh | None:
-    origin, placement = visual.find("origin"), np.eye(4)
-    if origin is not None:
-        placement[:3, :3] = pin.rpy.rpyToMatrix(np.array(_numbers(origin.get("rpy", "0 0 0"))))
-        placement[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
+    placement = placement_of(visual.find("origin"))
     box, round_, sphere = (visual.find(f"geometry/{kind}") for kind in ("box", "cylinder", "sphere"))
     if box is not None:
-        return block((0.0, 0.0, 0.0), _numbers(box.get("size", "")), edge=0.01).seen_from(placement)
+        return block((0.0, 0.0, 0.0), numbers_in(box.get("size", "")), edge=0.01).seen_from(placement)
     if round_ is not None:
         radius, half = float(round_.get("radius", "0")), float(round_.get("length", "0")) / 2.0
         if half < 1e-6:
@@ -81,9 +78,5 @@ def _mesh(visual: Element, with_ends: bool) -> Mesh | None:
 
 def _colour(visual: Element) -> Colour:
     colour = visual.find("material/color")
-    red, green, blue, *_ = _numbers("" if colour is None else colour.get("rgba", "")) or (0.5, 0.5, 0.5)
+    red, green, blue, *_ = numbers_in("" if colour is None else colour.get("rgba", "")) or (0.5, 0.5, 0.5)
     return (red, green, blue)
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    return tuple(map(float, text.split()))

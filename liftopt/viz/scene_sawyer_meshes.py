@@ -9,8 +9,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.multibody.dh import rotation_x, rotation_z, translation
+from liftopt.multibody.dh import translation
 from liftopt.multibody.robots.sawyer_description import HEAD_IN_FIRST_LINK, JOINTS, described_frames
+from liftopt.multibody.solids import placement_of
 from liftopt.types import Array
 from liftopt.viz.scene_mesh import Mesh
 from liftopt.viz.scene_part import GROUND, Colour, Part
@@ -70,21 +71,11 @@ def _visuals(folder: Path) -> list[_Visual]:
         if name not in MOVED_BY or visual is None or mesh is None:
             continue
         inside = str(mesh.get("filename")).split("sawyer_description/", 1)[-1]
-        visuals.append(_Visual(name, _origin(visual.find("origin")), (folder / inside).with_suffix(".STL")))
+        visuals.append(_Visual(name, placement_of(visual.find("origin")), (folder / inside).with_suffix(".STL")))
     missing = sorted(set(MOVED_BY) - {visual.link for visual in visuals})
     if missing:
         raise InputError("--sawyer", str(folder), f"{DESCRIPTION} has no mesh for {', '.join(missing)}")
     return visuals
-
-
-def _origin(element: ElementTree.Element | None) -> Array:
-    if element is None:
-        return np.eye(4)
-    x, y, z = map(float, element.get("xyz", "0 0 0").split())
-    roll, pitch, yaw = map(float, element.get("rpy", "0 0 0").split())
-    about_y = rotation_x(-np.pi / 2) @ rotation_z(pitch) @ rotation_x(np.pi / 2)
-    placement: Array = translation(x, y, z) @ rotation_z(yaw) @ about_y @ rotation_x(roll)
-    return placement
 
 
 def _load(file: Path) -> Mesh:

@@ -66,13 +66,8 @@ def _nearest_to_planes(vertices: Array, triangles: Indices, corners: Indices, cl
     return np.asarray(np.linalg.solve(planes, (toward + pull[:, None] * mean)[:, :, None])[:, :, 0])
 
 
-def creased(mesh: Mesh, sharp: float = SHARP) -> Mesh:
-    """Return a mesh whose vertices on sharp edges are one for each side, so that light does not round them off.
-
-    Args:
-        mesh: any.
-        sharp: angle between the normals of two triangles from which on their edge is sharp [rad].
-    """
+def creased(mesh: Mesh) -> Mesh:
+    """Return a mesh whose vertices on sharp edges are one for each side, so that light does not round them off."""
     triangles = mesh.triangles
     a, b, c = (mesh.vertices[triangles[:, i]] for i in range(3))
     normal = np.cross(b - a, c - a)
@@ -87,7 +82,7 @@ def creased(mesh: Mesh, sharp: float = SHARP) -> Mesh:
     ends, own = ends[order], own[order]
     same = np.flatnonzero((ends[1:] == ends[:-1]).all(axis=1))
     one, other = own[same], own[same + 1]
-    smooth = np.einsum("ei,ei->e", normal[one[:, 0] // 3], normal[other[:, 0] // 3]) > np.cos(sharp)
+    smooth = np.einsum("ei,ei->e", normal[one[:, 0] // 3], normal[other[:, 0] // 3]) > np.cos(SHARP)
     one, other = one[smooth].ravel(), other[smooth].ravel()
     links = coo_matrix((np.ones(len(one)), (one, other)), shape=(number.size, number.size))
     count, component = connected_components(links, directed=False)

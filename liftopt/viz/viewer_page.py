@@ -55,7 +55,11 @@ def playback_page(
     Raises:
         InputError: there is no such folder, or as ``figures_of``.
     """
-    casts = _casts(solution, other, ghost, None if sawyer is None else Path(sawyer), meshes)
+    return page_of(_casts(solution, other, ghost, None if sawyer is None else Path(sawyer), meshes))
+
+
+def page_of(casts: Sequence[Cast]) -> str:
+    """Return the HTML of the playback of one lift, or of two."""
     scale = metres_per_newton(force.force for cast in casts for force in cast.playback.forces.values())
     commands = stage_commands()
     tracks: list[dict[str, Any]] = []
@@ -70,11 +74,12 @@ def playback_page(
         "metres_per_newton": scale,
         "views": [view.plain() for view in views_of(casts)],
         "hands": _hands(casts),
-        "object": solution.object.name,
+        "object": casts[0].solution.object.name,
         "nearest_colour": _hex(LINE),
         "labels": _labels(casts),
     }
-    return _fill(data, _title(solution, other))
+    names = " and ".join(cast.solution.scenario.name for cast in casts)
+    return _fill(data, f"{names} - liftopt")
 
 
 def _casts(solution: Solution, other: Solution | None, ghost: bool, sawyer: Path | None, meshes: Meshes) -> list[Cast]:
@@ -159,11 +164,6 @@ def _label(cast: Cast, agent: AgentTrajectory, text: str, colour: Colour) -> dic
 
 def _hex(colour: Colour) -> str:
     return "#" + "".join(f"{round(255 * value):02x}" for value in colour)
-
-
-def _title(solution: Solution, other: Solution | None) -> str:
-    name = solution.scenario.name
-    return f"{name} - liftopt" if other is None else f"{name} and {other.scenario.name} - liftopt"
 
 
 def _fill(data: dict[str, Any], title: str) -> str:

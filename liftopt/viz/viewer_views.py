@@ -111,22 +111,32 @@ def agents_in(casts: Sequence[Cast]) -> tuple[AgentTrajectory, ...]:
 def head_of(cast: Cast, agent: AgentTrajectory) -> Array:
     """Return the top of an agent's head (3,), in the world, as it stands upright [m]."""
     base = cast.playback.bases[agent.name]
-    if agent.kind == "robot" and not is_sawyer(cast.solution.scenario, agent):
-        return np.array([*base[:2, 3], standing_points(cast, agent)[:, 2].max()]) + cast.offset
+    if _is_from_outside(cast, agent):
+        return np.array([*base[:2, 3], _standing(cast, agent)[1, 2]]) + cast.offset
     up = subject_in(cast.solution, agent.name).stature if agent.kind == "person" else HEAD
     head = base @ (0.0, 0.0, up, 1.0)
     return np.asarray(head[:3] + cast.offset)
 
 
-def standing_points(cast: Cast, agent: AgentTrajectory) -> Array:
-    """Return corners (2, 3) around what of a robot from outside does not move, and its joints over the lift [m].
+def _is_from_outside(cast: Cast, agent: AgentTrajectory) -> bool:
+    return agent.kind == "robot" and not is_sawyer(cast.solution.scenario, agent)
 
-    They are in the world, without the offset of the lift.
+
+def _standing(cast: Cast, agent: AgentTrajectory) -> Array:
+    """Return corners (2, 3) around where an agent stands, from foot to head [m].
+
+    They are in the world, without the offset of the lift. Of a robot from outside they are around what of it does not
+    move, its joints over the lift and the floor below its base.
     """
+    base = cast.playback.bases[agent.name]
+    if not _is_from_outside(cast, agent):
+        ahead, behind, aside = (BODY, BODY, BODY) if agent.kind == "person" else (AHEAD, BEHIND, ASIDE)
+        around = np.array([base @ (x, y, 0.0, 1.0) for x in (-behind, ahead) for y in (-aside, aside)])[:, :3]
+        low, high = around.min(axis=0), around.max(axis=0)
+        return np.array([(*low[:2], 0.0), (*high[:2], (head_of(cast, agent) - cast.offset)[2])])
     still = [part.mesh.vertices for part in cast.arms[agent.name] if part.body == GROUND]
     moving = [cast.playback.bodies[name].position for name in cast.playback.joints[agent.name]]
-    base = cast.playback.bases[agent.name][None, :3, 3]
-    points = np.vstack([base, *still, *moving])
+    points = np.vstack([base[:3, 3], base[:3, 3] * (1.0, 1.0, 0.0), *still, *moving])
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
@@ -148,26 +158,17 @@ def _angle(a: Array, b: Array) -> float:
 def _agent_box(casts: Sequence[Cast], agent: AgentTrajectory) -> Array:
     """Return corners (2, 3) around an agent in all lifts: where it stands, its joints and its hand."""
     points = []
-    for cast in casts:
+    here = [cast for cast in casts if agent.name in cast.playback.bases]
+    for cast in here:
         playback = cast.playback
-        if agent.name not in playback.bases:
-            continue
-        world_base, top = playback.bases[agent.name], float((head_of(cast, agent) - cast.offset)[2])
-        ahead, behind, aside = (BODY, BODY, BODY) if agent.kind == "person" else (AHEAD, BEHIND, ASIDE)
-        if agent.kind == "robot" and not is_sawyer(cast.solution.scenario, agent):
-            points += list(standing_points(cast, agent) + cast.offset)
-            ahead = behind = aside = top = 0.0
-        for x in (-behind, ahead):
-            for y in (-aside, aside):
-                points += [(world_base @ (x, y, 0.0, 1.0))[:3] * (1.0, 1.0, 0.0) + cast.offset]
-                points += [points[-1] + (0.0, 0.0, top)]
+        points += list(_standing(cast, agent) + cast.offset)
         (own,) = (one for one in cast.solution.agents if one.name == agent.name)  # it may hold otherwise in this lift
         points += [row for grasp in own.grasps for row in playback.forces[grasp.name].point + cast.offset]
         points += [row for name in playback.joints[agent.name] for row in playback.bodies[name].position + cast.offset]
     if agent.kind == "person":
         room = np.array([SEAT, SEAT, 0.0]) if has_legs(agent) else np.zeros(3)
     else:
-        room = np.full(3, ROBOT if _is_sawyer_in(casts, agent) else LINK)
+        room = np.full(3, LINK if any(_is_from_outside(cast, agent) for cast in here) else ROBOT)
     return np.array([np.min(points, axis=0) - room, np.max(points, axis=0) + room])
 
 
@@ -201,7 +202,3 @@ def _from(casts: Sequence[Cast], agent: AgentTrajectory, direction: tuple[float,
     cast = next(cast for cast in casts if agent.name in cast.playback.bases)
     side: list[float] = (cast.playback.bases[agent.name][:3, :3] @ direction).tolist()
     return side
-
-
-def _is_sawyer_in(casts: Sequence[Cast], agent: AgentTrajectory) -> bool:
-    return all(is_sawyer(cast.solution.scenario, agent) for cast in casts if agent.name in cast.playback.bases)

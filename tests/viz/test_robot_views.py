@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 pytest.importorskip("yourdfpy")
 
@@ -20,7 +22,11 @@ from liftopt.viz.base import base_of
 from liftopt.viz.own_meshes import figures_of
 from liftopt.viz.picture import picture_of
 from liftopt.viz.playback import playback_at
+from liftopt.viz.plots import write_plots
+from liftopt.viz.plots_data import Lift
 from liftopt.viz.plots_joints import LONGEST, short
+from liftopt.viz.plots_snapshots import snapshots
+from liftopt.viz.report import write_report
 from liftopt.viz.report_agents import team_words
 from liftopt.viz.robot_words import a_robot, data_words, joint_words, models_words
 from liftopt.viz.scene import Cast, parts_of
@@ -83,6 +89,23 @@ def test_a_picture_shows_meshes_where_they_are_installed_and_solids_else(
     monkeypatch.setattr("liftopt.multibody.robots.known_robot.share_folder", lambda: None)
     assert figures_of(lift) == {}
     plain = picture_of(lift, 0.0, "robot", (80, 60))
+    assert (own != plain).mean() > 0.01
+
+
+@pytest.mark.parametrize(("module", "write"), [("report_figures", write_report), ("plots", write_plots)])
+def test_snapshots_show_the_meshes_that_the_page_does(
+    module: str, write: Any, lift: Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lifts: list[Lift] = []
+
+    def drawn(_: Any, drawn_of: Lift) -> Figure:
+        lifts.append(drawn_of)
+        return Figure()
+
+    monkeypatch.setattr(f"liftopt.viz.{module}.drawn", drawn)
+    monkeypatch.setattr("liftopt.viz.plots_snapshots.PANEL", (120, 95))
+    write(lift, tmp_path / "written")
+    own, plain = (snapshots(one).axes[0].images[0].get_array() for one in (lifts[0], replace(lifts[0], figures={})))
     assert (own != plain).mean() > 0.01
 
 

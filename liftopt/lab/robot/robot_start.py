@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from liftopt.assessment.who import in_words
 from liftopt.errors import InputError
 from liftopt.lab.robot.action_server import PATH_TOLERANCE, Mode
 from liftopt.lab.robot.joint_map import JointMap
@@ -19,7 +20,6 @@ START = {mode: min(tolerance, 1.0) for mode, tolerance in PATH_TOLERANCE.items()
 ELSEWHERE = 0.2  # [rad] refused
 NEAR = 0.05  # [rad]: a first point farther off than this makes a jerk worth a note; our estimate
 ARM = 0.5  # [m]: a joint that slides by half of what a joint turns by leads a hand at half an arm's length as far off
-COUNT = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
 
 def accepted_start(mode: Mode | None) -> float:
@@ -70,7 +70,7 @@ def read_pose(text: str, joints: JointMap) -> Array:
         pose = np.empty(0)
     names, n = joints.names, len(joints.names)
     if pose.shape != (n,) or not np.isfinite(pose).all():
-        count = COUNT[n] if n < len(COUNT) else str(n)
+        count = in_words(n)
         which = f"{names[0]} to {names[-1]}" if joints.is_sawyer else ", ".join(names)
         what = f"{count} angles in radians" if not joints.sliding.any() else f"{count} positions in radians or metres"
         raise InputError("--current-pose", text, f"must be {what}, {which}")

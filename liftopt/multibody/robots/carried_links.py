@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-import pinocchio as pin
 
 from liftopt.multibody.robots.chain import RobotChain
-from liftopt.multibody.robots.description import ONE_AXIS, RobotJoint, RobotLink
+from liftopt.multibody.robots.description import RobotLink
 from liftopt.types import Array
 
 
@@ -44,14 +43,5 @@ def _placement(chain: RobotChain, start: str, name: str) -> Array:
     """Return T_start_name (4, 4) along joints that are held."""
     placement = np.eye(4)
     for joint in chain.description.joints_between(start, name) or ():
-        placement = placement @ joint.placement @ _moved(joint, chain.held.get(joint.name, 0.0))
+        placement = placement @ joint.placement @ joint.moved(chain.held.get(joint.name, 0.0))
     return placement
-
-
-def _moved(joint: RobotJoint, position: float) -> Array:
-    moved = np.eye(4)
-    if joint.kind == "prismatic":
-        moved[:3, 3] = joint.axis * position
-    elif joint.kind in ONE_AXIS and position != 0.0:
-        moved[:3, :3] = pin.exp3(joint.axis * position)
-    return moved

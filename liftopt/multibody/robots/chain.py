@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
-import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.dh import BodyInertia
@@ -205,16 +204,10 @@ def _position(joint: RobotJoint, given: Mapping[str, float], description: RobotD
 
 def _at(joint: RobotJoint, given: Mapping[str, float], description: RobotDescription, held: dict[str, float]) -> Array:
     """Return T_parent_child (4, 4) of a joint that does not move, and note where it is held."""
-    moved = np.eye(4)
-    if joint.kind in ONE_AXIS:
-        held[joint.name] = position = _position(joint, given, description)
-        if joint.kind == "prismatic":
-            moved[:3, 3] = joint.axis * position
-        elif position != 0.0:
-            moved[:3, :3] = pin.exp3(joint.axis * position)
-    elif joint.kind in OTHERS:
-        held[joint.name] = 0.0
-    return np.asarray(joint.placement @ moved)
+    position = _position(joint, given, description) if joint.kind in ONE_AXIS else 0.0
+    if joint.kind in (*ONE_AXIS, *OTHERS):
+        held[joint.name] = position
+    return np.asarray(joint.placement @ joint.moved(position))
 
 
 def _still(

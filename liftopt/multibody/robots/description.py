@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+import pinocchio as pin
+
 from liftopt.errors import InputError
 from liftopt.files.suggestions import did_you_mean, nearest
 from liftopt.multibody.dh import BodyInertia
@@ -77,6 +80,15 @@ class RobotJoint:
     soft_lower: float | None = None
     soft_upper: float | None = None
     mimic: Mimic | None = None
+
+    def moved(self, position: float) -> Array:
+        """Return (4, 4) how far it moves its child to a position from zero; joints of several ways stay there."""
+        moved = np.eye(4)
+        if self.kind == "prismatic":
+            moved[:3, 3] = self.axis * position
+        elif self.kind in ONE_AXIS and position != 0.0:
+            moved[:3, :3] = pin.exp3(self.axis * position)
+        return moved
 
 
 @dataclass(frozen=True)

@@ -22,10 +22,8 @@ CRUMB = 0.01  # of it: what is smaller goes with what is nearest
 WASTED = 1.06  # of what they were apart: so large a part that is made of two may be
 WORTH = 1.03  # times as much room as with cuts: solids without any are taken that need no more
 FREE = 10.0  # of a part so fine that it is not cut, this part may be wasted anyhow
-ROUGH, MOST_ROUGH = (
-    16,
-    700,
-)  # cells along a link's largest extent with a point in each, to compare cuts; at most so many
+ROUGH = 16  # cells along a link's largest extent with a point in each, to compare cuts
+MOST_ROUGH = 700  # such points
 BOXIER = 0.75  # of a capsule's volume: where boxes are allowed, one that is smaller is taken in its place
 HALVED = 5  # times that a large triangle is cut in four so that points lie all over it
 # Directions to neighbouring cells.
@@ -44,12 +42,6 @@ class FittedBox:
     def volume(self) -> float:
         """[m^3]."""
         return float(np.prod(self.size))
-
-    def outside(self, points: Array) -> Array:
-        """Return how far points (n, 3) are outside [m], negative within."""
-        own = np.abs((points - self.placement[:3, 3]) @ self.placement[:3, :3]) - self.size / 2.0
-        beyond: Array = np.linalg.norm(np.maximum(own, 0.0), axis=1) + np.minimum(own.max(axis=1), 0.0)
-        return beyond
 
 
 @dataclass(frozen=True)

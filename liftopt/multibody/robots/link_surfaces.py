@@ -5,18 +5,16 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from liftopt.errors import InputError
 from liftopt.multibody.robots.carried_links import CarriedLink, carried_links
 from liftopt.multibody.robots.chain import RobotChain
 from liftopt.multibody.robots.fitted_solids import Surface
-from liftopt.multibody.robots.mesh_file import read_mesh
+from liftopt.multibody.robots.mesh_file import Triangles, read_mesh
 from liftopt.multibody.robots.robot_shape import RobotShape
 from liftopt.types import Array
 
 AROUND = 16  # sides of the prism around a cylinder
-MOST_BYTES = 150_000_000  # of the meshes of one robot
 
 
 def body_surfaces(chain: RobotChain) -> tuple[dict[int, Surface], tuple[CarriedLink, ...]]:
@@ -48,17 +46,26 @@ def shape_triangles(shape: RobotShape) -> Array | None:
     Of a cylinder or a ball they are those of a body with corners around it.
     """
     if shape.kind == "mesh":
-        if shape.mesh is None or shape.mesh.path is None:
-            return None
-        try:
-            pieces = read_mesh(shape.mesh.path, shape.size, y_up=shape.mesh.y_up)
-        except InputError:
+        pieces = mesh_pieces(shape)
+        if not pieces:
             return None
         corners = np.concatenate([piece.vertices[piece.triangles] for piece in pieces])
     else:
+        from scipy.spatial import ConvexHull  # as much work to import as all else here
+
         points = _corners(shape)
         corners = points[ConvexHull(points).simplices]
     return np.asarray(corners @ shape.placement[:3, :3].T + shape.placement[:3, 3])
+
+
+def mesh_pieces(shape: RobotShape) -> tuple[Triangles, ...]:
+    """Return the pieces of a shape's mesh in the frame of the shape, none where it cannot be read."""
+    if shape.mesh is None or shape.mesh.path is None:
+        return ()
+    try:
+        return read_mesh(shape.mesh.path, shape.size, y_up=shape.mesh.y_up)
+    except InputError:
+        return ()
 
 
 def _corners(shape: RobotShape) -> Array:

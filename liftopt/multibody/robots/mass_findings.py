@@ -78,8 +78,7 @@ def _of_body(where: str, body: BodyInertia, beyond: float) -> Iterator[DataFindi
         return
     moments = principal_moments(body)
     if moments[0] < 0.0 or (moments[0] == 0.0 and beyond == 0.0):
-        message = f"must be positive, and are {_shown(moments)} kg m^2"
-        yield DataFinding("inertia.positive", "refused", f"{where}: principal moments", NO_VALUE, message, SHEET)
+        yield _not_positive(where, moments)
     elif moments[0] == 0.0:
         message = f"one is zero, {_shown(moments)} kg m^2: a point or a rod turns without effort"
         yield DataFinding("inertia.zero", "warned", f"{where}: principal moments", NO_VALUE, message, SHEET)
@@ -90,8 +89,12 @@ def _of_base(name: str, body: BodyInertia) -> Iterator[DataFinding]:
     if 0.0 < body.mass <= LARGEST_NUMBER and (np.abs(body.inertia) <= LARGEST_NUMBER).all():
         moments = principal_moments(body)
         if moments[0] < -ROUNDING:
-            message = f"must be positive, and are {_shown(moments)} kg m^2"
-            yield DataFinding("inertia.base", "refused", f"link {name}: principal moments", NO_VALUE, message, SHEET)
+            yield _not_positive(f"link {name}", moments)
+
+
+def _not_positive(where: str, moments: Array) -> DataFinding:
+    message = f"must be positive, and are {_shown(moments)} kg m^2"
+    return DataFinding("inertia.positive", "refused", f"{where}: principal moments", NO_VALUE, message, SHEET)
 
 
 def _too_large(where: str, body: BodyInertia, size: float) -> Iterator[DataFinding]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from liftopt.multibody.agent import JointLimits
+from liftopt.multibody.agent import JointLimits, slides
 from liftopt.multibody.robots.evenly_spread import evenly_spread
 from liftopt.types import Array
 
@@ -124,7 +124,7 @@ def _usual(limits: JointLimits) -> tuple[Array, Array]:
 
 
 def _aim(model: pin.Model, data: pin.Data, at: int, spread: Array, ahead: Array) -> _Aim:
-    turning = [i for i in range(1, model.njoints) if not model.joints[i].shortname().startswith("JointModelP")]
+    turning = (1 + np.flatnonzero(~slides(model))).tolist()
     first, second = (turning[0], turning[min(1, len(turning) - 1)]) if turning else (1, 1)
     pin.forwardKinematics(model, data, spread.mean(axis=0))
     start, axis = data.oMi[first].translation.copy(), data.oMi[first].rotation[:, 2].copy()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -15,6 +14,7 @@ from liftopt.multibody.robots.link_surfaces import body_surfaces
 from liftopt.multibody.robots.smallest_capsule import FittedCapsule
 from liftopt.multibody.shapes import Box, Capsule, Colour, Shape
 from liftopt.multibody.solids import END_SPHERES
+from liftopt.multibody.urdf import plain_name
 from liftopt.types import Array
 
 GREY = Colour("robot_grey", (0.30, 0.31, 0.33, 1.0))
@@ -79,5 +79,5 @@ def _tube(name: str, end: Array, radius: float) -> Iterator[Shape]:
 
 def _plain(name: str) -> str:
     """Return a link's name as that of a shape, which does not end as the ends of a capsule do."""
-    plain = re.sub(r"[^A-Za-z0-9_.+-]", "_", name)[:LONGEST_NAME]
+    plain = plain_name(name)[:LONGEST_NAME]
     return f"{plain}_link" if plain.endswith(END_SPHERES) else plain

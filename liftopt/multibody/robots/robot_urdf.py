@@ -6,7 +6,6 @@ those of the URDF that was read. What does not move is one body with what carrie
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 import numpy as np
@@ -22,7 +21,7 @@ from liftopt.multibody.robots.robot_solids import robot_solids
 from liftopt.multibody.robots.robot_stand import robot_stand
 from liftopt.multibody.robots.sawyer_shapes import tool_shapes
 from liftopt.multibody.robots.tool import UNTURNED, along, tool_body
-from liftopt.multibody.urdf import FixedLink, JointBounds, MovingLink, tree_robot, urdf_text
+from liftopt.multibody.urdf import FixedLink, JointBounds, MovingLink, plain_name, tree_robot, urdf_text
 from liftopt.types import Array
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -112,12 +111,7 @@ def _named(agent: str, own: Iterable[str], taken: Iterable[str], chain: RobotCha
 
 def own_joint(agent: str, name: str) -> str:
     """Return what liftopt's URDF of an agent calls the joint or link that the robot's own URDF calls ``name``."""
-    return f"{agent}_{_plain(name)}"[:LONGEST_NAME]
-
-
-def _plain(name: str) -> str:
-    """Return a name without the characters that liftopt's URDFs do not have."""
-    return re.sub(r"[^A-Za-z0-9_.+-]", "_", name)[:LONGEST_NAME]
+    return f"{agent}_{plain_name(name)}"[:LONGEST_NAME]
 
 
 def turned(link: ChainLink) -> Array:

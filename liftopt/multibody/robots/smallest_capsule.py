@@ -28,13 +28,6 @@ class FittedCapsule:
         length = float(np.linalg.norm(self.end - self.start))
         return float(np.pi * self.radius**2 * (length + 4.0 / 3.0 * self.radius))
 
-    def outside(self, points: Array) -> Array:
-        """Return how far points (n, 3) are outside [m], negative within."""
-        along = self.end - self.start
-        share = np.clip((points - self.start) @ along / max(float(along @ along), 1e-18), 0.0, 1.0)
-        gap: Array = np.linalg.norm(points - self.start - share[:, None] * along, axis=1) - self.radius
-        return gap
-
 
 def smallest_capsule(points: Array) -> FittedCapsule:
     """Return a small capsule that holds all ``points`` (n, 3) [m]."""

@@ -22,8 +22,14 @@ def _data(page: str) -> Any:
     return json.loads(text)
 
 
-def test_two_people_are_told_by_name(two_people: Any) -> None:
-    data = _data(playback_page(two_people.solution))
+@pytest.fixture(scope="module")
+def pages(two_people: Any, two_robots: Any) -> dict[str, str]:
+    """Return the page of either team, by the name of its scenario."""
+    return {one.solution.scenario.name: playback_page(one.solution) for one in (two_people, two_robots)}
+
+
+def test_two_people_are_told_by_name(pages: dict[str, str]) -> None:
+    data = _data(pages["two_people"])
     assert [view["name"] for view in data["views"]] == ["three-quarter", "side", "front", "top", "anna", "ben", "hands"]
     titles = {view["name"]: view["title"] for view in data["views"]}
     assert titles["front"] == "straight at anna's face, through everybody else"
@@ -36,8 +42,8 @@ def test_two_people_are_told_by_name(two_people: Any) -> None:
     np.testing.assert_allclose([label["at"] for label in data["labels"]], [[0, 0, 1.72], [1.3, 0, 1.92]], atol=1e-9)
 
 
-def test_only_agents_of_a_kind_that_there_are_several_of_have_names(two_robots: Any) -> None:
-    data = _data(playback_page(two_robots.solution))
+def test_only_agents_of_a_kind_that_there_are_several_of_have_names(pages: dict[str, str]) -> None:
+    data = _data(pages["two_robots"])
     names = [view["name"] for view in data["views"]]
     assert names == ["three-quarter", "side", "front", "top", "person", "near", "far", "hands"]
     assert [hand["who"] for hand in data["hands"]] == ["the human", "near", "far"]
@@ -45,21 +51,21 @@ def test_only_agents_of_a_kind_that_there_are_several_of_have_names(two_robots: 
     assert data["object"] == "plank"
 
 
-def test_a_preset_of_an_agent_faces_it(two_people: Any) -> None:
+def test_a_preset_of_an_agent_faces_it(pages: dict[str, str]) -> None:
     """Who looks along -X is seen from the other side: both from ahead, and from the right."""
-    sides = {view["name"]: np.array(view["side"]) for view in _data(playback_page(two_people.solution))["views"]}
+    sides = {view["name"]: np.array(view["side"]) for view in _data(pages["two_people"])["views"]}
     np.testing.assert_allclose(sides["ben"], sides["anna"] * [-1, -1, 1], atol=1e-9)
 
 
-def test_a_preset_looks_past_those_who_stand_beside(two_robots: Any) -> None:
+def test_a_preset_looks_past_those_who_stand_beside(pages: dict[str, str]) -> None:
     """Both robots are seen from ahead and from outside, where the other one is behind and not before them."""
-    sides = {view["name"]: view["side"] for view in _data(playback_page(two_robots.solution))["views"]}
+    sides = {view["name"]: view["side"] for view in _data(pages["two_robots"])["views"]}
     np.testing.assert_allclose(sides["near"], [-0.45, -1.0, 0.2], atol=1e-9)
     np.testing.assert_allclose(sides["far"], [-0.45, 1.0, 0.2], atol=1e-9)
 
 
-def test_everything_that_an_agent_moves_is_in_its_preset(team: Any) -> None:
-    views = {view["name"]: view for view in _data(playback_page(team.solution))["views"]}
+def test_everything_that_an_agent_moves_is_in_its_preset(team: Any, pages: dict[str, str]) -> None:
+    views = {view["name"]: view for view in _data(pages[team.solution.scenario.name])["views"]}
     for agent, track in zip(team.agents, team.solution.agents, strict=True):
         low, high = views[agent.name if agent.name in views else "person"]["box"]
         data = agent.model.createData()
@@ -80,9 +86,9 @@ def test_a_lift_beside_one_of_another_team(two_people: Any, two_robots: Any) -> 
 
 
 @pytest.fixture(scope="module")
-def opened(two_robots: Any, open_page: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory) -> Any:
+def opened(pages: dict[str, str], open_page: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory) -> Any:
     file = tmp_path_factory.mktemp("page") / "robots.html"
-    file.write_text(playback_page(two_robots.solution), encoding="utf-8")
+    file.write_text(pages["two_robots"], encoding="utf-8")
     return open_page(file)
 
 

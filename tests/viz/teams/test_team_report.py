@@ -25,6 +25,12 @@ def _section(page: str, name: str) -> str:
     return unescape(re.sub(r"<[^>]*>", " ", found))
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave figures empty, which ``_page`` leaves out and which take most of the time."""
+    monkeypatch.setattr("liftopt.viz.report_figures.drawn", lambda *_: Figure())
+
+
 @pytest.fixture(scope="module")
 def people(two_people: Any) -> str:
     return _page(two_people.solution)
@@ -87,7 +93,7 @@ def test_every_number_and_finding_says_whose_it_is(two_people: Any, two_robots: 
             assert ("the person " if agent.name == "human" else f"{agent.name} ") in verdict
 
 
-def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any) -> None:
+def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any, undrawn: None) -> None:
     figure = Figure(figsize=(2.0, 1.0))
     figure.subplots().plot([0, 1], [0, 1])
     section = ReportSection(
@@ -111,7 +117,9 @@ def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any) -
     assert _section(page, "trial").rstrip().endswith("A note.")
 
 
-def test_heights_of_an_object_that_has_a_place_of_its_own_are_those_of_its_underside(two_people: Any) -> None:
+def test_heights_of_an_object_that_has_a_place_of_its_own_are_those_of_its_underside(
+    two_people: Any, undrawn: None
+) -> None:
     """The centre at 1 and 1.3 m of a box 0.25 m high."""
     places = {end: {"x": 0.65, "z": z} for end, z in (("start", 1.0), ("end", 1.3))}
     scenario = two_people.solution.scenario.replace({f"task.{end}": place for end, place in places.items()})
