@@ -22,7 +22,9 @@ from liftopt.multibody.agent import Agent, Grasp, LiftedObject
 from liftopt.multibody.joint_units import TURNS
 from liftopt.multibody.person.human import Subject, human_agent
 from liftopt.multibody.placement import facing
+from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.example_robot_data import share_folder
+from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer import sawyer_agent
 from liftopt.multibody.table import lifted_table
 from liftopt.scenario.model import load_scenario
@@ -86,6 +88,18 @@ def scenario_tables() -> Any:
 def coal_distance() -> Any:
     """Return the module that measures distances of solids by coal."""
     return _module("coal_distance")
+
+
+@pytest.fixture(scope="session")
+def known_agent() -> Callable[..., Agent]:
+    """Return a function that makes an agent of a robot that is known by name; its base is at the origin by default."""
+
+    def made(model: str, **entries: Any) -> Agent:
+        known = known_robots()[model]
+        own = {"base": known.base, "grasp_frame": known.grasp_frame, "locked": known.locked}
+        return robot_agent(known.description(), **{"name": "robot", "T_world_base": np.eye(4), **own, **entries})
+
+    return made
 
 
 @pytest.fixture(scope="session")

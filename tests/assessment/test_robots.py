@@ -19,9 +19,7 @@ from liftopt.assessment.text import verdict_text
 from liftopt.assessment.who import Who
 from liftopt.commands.summary_text import print_details
 from liftopt.errors import NO_VALUE
-from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.data_finding import DataFinding
-from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.scenario.build import agents_of
 from liftopt.solution.finding import Finding
 from liftopt.solution.interpolation import between_knots
@@ -133,12 +131,8 @@ def test_doubtful_data_are_told_where_there_is_no_lift(ur10: Any) -> None:
     assert lines[1] == f"  to check: Data of the robot: {doubt.told}."
 
 
-def test_an_agent_from_a_file_carries_what_was_noticed(ur10: Any) -> None:
-    panda = known_robots()["panda"]
-    agent = robot_agent(
-        panda.description(), name="robot", T_world_base=np.eye(4), base=panda.base, grasp_frame=panda.grasp_frame
-    )
-    assert "joints.held" in [remark.code for remark in agent.remarks]
+def test_an_agent_from_a_file_carries_what_was_noticed(ur10: Any, known_agent: Any) -> None:
+    assert "joints.held" in [remark.code for remark in known_agent("panda").remarks]
 
 
 def test_a_joint_that_slides_is_told_in_its_units(on_a_column: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +12,8 @@ import pytest
 from liftopt.collocation.codegen.kernels import kernel_key
 from liftopt.collocation.problem import kernel_requests
 from liftopt.collocation.separating_planes import pose_request
-from liftopt.multibody.robots.catalogue import known_robots
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.robots.example_robot_data import share_folder
-from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.scenario.build import agents_of, object_of
 from liftopt.scenario.model import load_scenario
 from liftopt.search.ship_kernels import shipped_requests
@@ -38,14 +38,12 @@ def test_the_object_of_a_person_with_two_hands_and_a_robot_is_shipped(shipped: s
 
 @pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed (it is in 'test')")
 @pytest.mark.parametrize("name", ["ur10", "panda", "tiago", "tiago_lifting", "so100", "icub_left"])
-def test_an_arm_compiles_nothing_wherever_it_stands(name: str, shipped: set[str]) -> None:
+def test_an_arm_compiles_nothing_wherever_it_stands(
+    name: str, known_agent: Callable[..., Agent], shipped: set[str]
+) -> None:
     """Fingers that mimic each other, joints that are locked, and a tilted base; with a person, held by both."""
-    robot = known_robots()[name]
     place = np.asarray(pin.SE3(pin.rpy.rpyToMatrix(0.3, -1.2, 0.5), np.array([1.2, 0.1, 0.9])))
-    agent = robot_agent(
-        robot.description(), name="robot", T_world_base=place, grasp_frame=robot.grasp_frame, base=robot.base,
-        tool_length=0.1, tool_mass=0.5, locked=robot.locked,
-    )  # fmt: skip
+    agent = known_agent(name, T_world_base=place, tool_length=0.1, tool_mass=0.5)
     for moments in (False, True):
         held = replace(agent, grasps=tuple(replace(grasp, moments=moments) for grasp in agent.grasps))
         scenario = load_scenario(changes=[f"human.grasp={'wrench' if moments else 'point'}"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -9,11 +11,11 @@ pytest.importorskip("yourdfpy")
 
 from scipy.spatial import cKDTree
 
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
 from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.chosen_robot import chosen_robot
 from liftopt.multibody.robots.example_robot_data import share_folder
-from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.viz.robot_figure import MOST_TRIANGLES, figure_of
 from liftopt.viz.robot_picture import robot_bodies, robot_picture
 from liftopt.viz.scene_mesh import Mesh, ball, merged
@@ -26,19 +28,18 @@ NEAR, COVERED = 0.011, 0.02
 
 @pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
 @pytest.mark.parametrize("name", ["ur10", "tiago_no_hand"])
-def test_meshes_are_where_the_urdf_has_them(name: str, rng: np.random.Generator) -> None:
+def test_meshes_are_where_the_urdf_has_them(
+    name: str, known_agent: Callable[..., Agent], rng: np.random.Generator
+) -> None:
     import trimesh
     import yourdfpy
 
     known = known_robots()[name]
     T_world_base = rotation_z(0.5)
     T_world_base[:3, 3] = 1.9, -0.2, 0.0
-    agent = robot_agent(
-        known.description(), name="ann", T_world_base=T_world_base, base=known.base, grasp_frame=known.grasp_frame,
-        locked=known.locked,
-    )  # fmt: skip
+    agent = known_agent(name, name="ann", T_world_base=T_world_base)
     q = rng.uniform(agent.limits.q_lower, agent.limits.q_upper)
-    figure = figure_of(chosen_robot(known.name).examination().chain)
+    figure = figure_of(chosen_robot(name).examination().chain)
     assert 1000 < sum(len(piece.mesh.triangles) for piece in figure) <= MOST_TRIANGLES
     drawn = [body.mesh for body in robot_bodies(agent, figure, q)]
     robot = yourdfpy.URDF.load(
@@ -56,15 +57,9 @@ def test_meshes_are_where_the_urdf_has_them(name: str, rng: np.random.Generator)
 
 
 @pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
-def test_a_picture_of_a_robot_alone_shows_it_and_without_meshes_its_solids() -> None:
-    known = known_robots()["ur5"]
-    agent = robot_agent(
-        known.description(), name="ann", T_world_base=np.eye(4), base=known.base, grasp_frame=known.grasp_frame
-    )
-    with_meshes, plain = (
-        robot_picture(agent, figure, size=(60, 60))
-        for figure in (figure_of(chosen_robot(known.name).examination().chain), ())
-    )
+def test_a_picture_of_a_robot_alone_shows_it_and_without_meshes_its_solids(known_agent: Callable[..., Agent]) -> None:
+    agent, meshes = known_agent("ur5", name="ann"), figure_of(chosen_robot("ur5").examination().chain)
+    with_meshes, plain = (robot_picture(agent, figure, size=(60, 60)) for figure in (meshes, ()))
     for image in (with_meshes, plain):
         assert image.shape == (60, 60, 3)
         assert 0.03 < (image < 120).all(axis=2).mean() < 0.6  # what is dark is the robot
@@ -99,5 +94,5 @@ def test_light_sees_edges_of_a_box_and_none_on_a_ball() -> None:
 def test_a_piece_that_is_gone_before_there_are_few_enough_triangles_is_left_out() -> None:
     """Baxter with its left arm held has pieces so small that nothing is left of them on the way."""
     known = known_robots()["baxter_right"]
-    found = figure_of(chosen_robot(known.name).examination().chain)
+    found = figure_of(chosen_robot(name).examination().chain)
     assert found and all(len(piece.mesh.triangles) for piece in found)

@@ -13,7 +13,6 @@ from liftopt.errors import InputError
 from liftopt.multibody.robots.catalogue import known_or_path, known_robots
 from liftopt.multibody.robots.chosen_robot import chosen_robot
 from liftopt.multibody.robots.example_robot_data import share_folder
-from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.robots.sawyer_description import JOINTS
 from liftopt.multibody.robots.weight_findings import weight_findings
 from liftopt.storage.urdf_check import check_urdf
@@ -23,16 +22,12 @@ KNOWN = known_robots()
 
 @pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed (it is in 'test')")
 @pytest.mark.parametrize("name", KNOWN)
-def test_every_known_robot_can_lift_as_it_is_known(name):
-    known = KNOWN[name]
-    found = chosen_robot(known.name).examination()
+def test_every_known_robot_can_lift_as_it_is_known(name, known_agent):
+    found = chosen_robot(name).examination()
     assert not found.refused
     assert 5 <= len(found.chain.links) <= 8
     assert 0.2 < found.chain.reach < 2.0
-    agent = robot_agent(
-        known.description(), name="robot", T_world_base=np.eye(4), base=known.base, grasp_frame=known.grasp_frame,
-        locked=known.locked,
-    )  # fmt: skip
+    agent = known_agent(name)
     check_urdf(agent.urdf)
     assert agent.model.nq == len(found.chain.links)
     assert (agent.limits.q_lower < agent.posture).all() and (agent.posture < agent.limits.q_upper).all()

@@ -9,9 +9,7 @@ import pytest
 
 pytest.importorskip("yourdfpy")
 
-from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.example_robot_data import share_folder
-from liftopt.multibody.robots.robot_agent import robot_agent
 from liftopt.multibody.solid_pairs import solid_pairs
 from liftopt.multibody.solids import solids_of
 
@@ -22,12 +20,8 @@ SCATTER = 0.25  # three standard deviations of the share of 40 postures
 
 @pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
 @pytest.mark.parametrize("name", ["ur5", "panda", "baxter_left", "tiago_lifting", "z1"])
-def test_only_parts_that_overlap_in_most_postures_may(name, table, coal_distance, rng):
-    known = known_robots()[name]
-    agent = robot_agent(
-        known.description(), name="robot", T_world_base=np.eye(4), base=known.base, grasp_frame=known.grasp_frame,
-        locked=known.locked,
-    )  # fmt: skip
+def test_only_parts_that_overlap_in_most_postures_may(name, known_agent, table, coal_distance, rng):
+    agent = known_agent(name)
     kept = {pair.told for pair in solid_pairs((agent,), table) if pair.within_body}
     solids = solids_of(agent)
     bearing = sorted({solid.joint for solid in solids})

@@ -8,7 +8,6 @@ import pytest
 
 pytest.importorskip("yourdfpy")
 
-from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.example_robot_data import share_folder
 from liftopt.multibody.robots.read_robot import read_robot
 from liftopt.multibody.robots.resting_posture import heading
@@ -30,14 +29,6 @@ needs_robots = pytest.mark.skipif(share_folder() is None, reason="example-robot-
 POINTING = ("ur3", "ur5", "ur10", "panda", "kinova", "xarm7", "baxter_left", "baxter_right", "tiago_dual_right")
 
 
-def _known(name, place):
-    known = known_robots()[name]
-    return robot_agent(
-        known.description(), name="robot", T_world_base=place, base=known.base, grasp_frame=known.grasp_frame,
-        locked=known.locked,
-    )  # fmt: skip
-
-
 def _conditioned(agent, q):
     """Return the least singular value of the tip's motion, lengths in shares of its distance from the first joint."""
     model, data = agent.model, agent.model.createData()
@@ -49,9 +40,9 @@ def _conditioned(agent, q):
 
 @needs_robots
 @pytest.mark.parametrize("name", POINTING)
-def test_the_tool_is_level_and_ahead_far_from_limits_and_from_stretched(name):
+def test_the_tool_is_level_and_ahead_far_from_limits_and_from_stretched(name, known_agent):
     place = np.asarray(pin.SE3(pin.rpy.rpyToMatrix(0.0, 0.0, 2.5), np.array([1.0, 2.0, 0.9])))
-    agent = _known(name, place)
+    agent = known_agent(name, T_world_base=place)
     data, limits, ahead = agent.model.createData(), agent.limits, np.array([np.cos(2.5), np.sin(2.5), 0.0])
     pin.framesForwardKinematics(agent.model, data, agent.posture)
     tip = data.oMf[agent.model.getFrameId("robot_grasp")]
@@ -60,13 +51,13 @@ def test_the_tool_is_level_and_ahead_far_from_limits_and_from_stretched(name):
     assert np.minimum(agent.posture - limits.q_lower, limits.q_upper - agent.posture).min() > 0.4
     middle = (limits.q_lower + limits.q_upper) / 2.0
     assert _conditioned(agent, agent.posture) > max(0.1, _conditioned(agent, middle))
-    np.testing.assert_array_equal(agent.posture, _known(name, place).posture)
+    np.testing.assert_array_equal(agent.posture, known_agent(name, T_world_base=place).posture)
 
 
 @needs_robots
-def test_a_robot_on_a_wall_reaches_out_level_too():
+def test_a_robot_on_a_wall_reaches_out_level_too(known_agent):
     place = np.asarray(pin.SE3(pin.rpy.rpyToMatrix(0.0, np.pi / 2.0, np.pi), np.array([2.0, 0.0, 1.2])))
-    agent = _known("ur5", place)
+    agent = known_agent("ur5", T_world_base=place)
     data = agent.model.createData()
     pin.framesForwardKinematics(agent.model, data, agent.posture)
     tip = data.oMf[agent.model.getFrameId("robot_grasp")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -11,6 +12,7 @@ import pytest
 pytest.importorskip("yourdfpy")
 
 from liftopt.errors import InputError
+from liftopt.multibody.agent import Agent
 from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.examination import examined
 from liftopt.multibody.robots.example_robot_data import share_folder
@@ -37,18 +39,16 @@ def _gap(solid: Solid, T_world_joint: np.ndarray, points: np.ndarray) -> np.ndar
 
 @pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
 @pytest.mark.parametrize("name", list(MOST))
-def test_every_vertex_of_the_collision_meshes_is_inside(name: str, coal_distance: ModuleType) -> None:
+def test_every_vertex_of_the_collision_meshes_is_inside(
+    name: str, known_agent: Callable[..., Agent], coal_distance: ModuleType
+) -> None:
     import yourdfpy
 
-    known = known_robots()[name]
     T_world_base = np.eye(4)
     T_world_base[:3, 3] = 1.5, -0.3, 0.4
-    agent = robot_agent(
-        known.description(), name="ann", T_world_base=T_world_base, base=known.base, grasp_frame=known.grasp_frame,
-        locked=known.locked,
-    )  # fmt: skip
+    agent = known_agent(name, name="ann", T_world_base=T_world_base)
     robot = yourdfpy.URDF.load(
-        known.path, build_collision_scene_graph=True, load_collision_meshes=True, load_meshes=False,
+        known_robots()[name].path, build_collision_scene_graph=True, load_collision_meshes=True, load_meshes=False,
         filename_handler=lambda fname: str(share_folder().parent / fname.removeprefix("package://")),
     )  # fmt: skip
     own = [joint.removeprefix("ann_") for joint in agent.model.names[1:]]
