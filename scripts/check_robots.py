@@ -28,8 +28,6 @@ import tomli_w
 import liftopt as lo
 from liftopt.commands.cli import main as liftopt_command
 from liftopt.multibody.robots.catalogue import known_robots
-from liftopt.multibody.robots.examination import Examination, examined
-from liftopt.multibody.robots.given_limits import GivenLimits
 from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_agents import chosen_of
 from liftopt.search.first_scenario import first_scenario
@@ -133,7 +131,7 @@ def lifted(asked: Asked, out: Path, *, show: bool) -> Row:
     """Return what comes of a robot."""
     row, progress = Row(asked.name, asked.maker, asked.source), Compiling()
     try:
-        found = _examined(Robot(**asked.entries))
+        found = chosen_of(Robot(**asked.entries), "robot").examination()
         row.joints = len(found.chain.links)
         row.data = ", ".join(dict.fromkeys(one.code for one in found.findings if one.severity == "warned"))
         if found.refused:
@@ -163,15 +161,6 @@ def lifted(asked: Asked, out: Path, *, show: bool) -> Row:
         folder = solution.save(out / asked.name)
         row.shown = ", ".join(_shown(folder)) if show else ""
     return row
-
-
-def _examined(robot: Robot) -> Examination:
-    """Return what is noticed about a robot's data."""
-    chosen = chosen_of(robot, "robot")
-    limits = {joint: GivenLimits(**dict(own)) for joint, own in robot.limits.items()}
-    return examined(
-        chosen.description, grasp_frame=chosen.grasp_frame, base=chosen.base_link, locked=chosen.locked, limits=limits
-    )
 
 
 def _measured(row: Row, solution: lo.Solution) -> None:

@@ -15,7 +15,7 @@ from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.agent import Agent, LiftedObject
 from liftopt.multibody.likeness import difference
 from liftopt.multibody.trajectory import AgentTrajectory, ObjectTrajectory, agent_trajectory, object_trajectory
-from liftopt.scenario.build import agents_of, object_of
+from liftopt.scenario.build import agent_of, agents_of, object_of
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.robot_agents import is_from_file
 from liftopt.solution.checks import Verification
@@ -60,9 +60,9 @@ def load_result(path: str | Path) -> Solution:
     scenario = scenario_of(file, attributes)
     urdfs = _urdfs(file, attributes, scenario)
     # Of a robot that a file describes nothing is read again: that file may be gone, or be no robot at all.
-    own = {name: text for name, text in urdfs.items() if is_from_file(scenario, name)}
+    own = [name for name in scenario.agents if not is_from_file(scenario, name)]
     try:
-        built: tuple[Agent | LiftedObject, ...] = (*agents_of(scenario, own), object_of(scenario))
+        built: list[Agent | LiftedObject] = [*(agent_of(scenario, name) for name in own), object_of(scenario)]
         agents, lifted = agents_of(scenario, urdfs), object_of(scenario, urdfs)
         _check_models(file, scenario, built, (*agents, lifted))
         return _solution(scenario, urdfs, agents, lifted, data, attributes)
@@ -91,11 +91,14 @@ def _check_models(
     file: Path, scenario: Scenario, built: Sequence[Agent | LiftedObject], given: Sequence[Agent | LiftedObject]
 ) -> None:
     """Raise InputError if the models of a result are not those of its scenario; small numbers may differ."""
-    for expected, one in zip(built, given, strict=True):
-        frames = expected.grasp_frames if isinstance(expected, LiftedObject) else expected.hands
-        found = difference(one.model, expected.model, frames)
-        if isinstance(one, Agent) and is_from_file(scenario, one.name):
+    expected = {one.name: one for one in built}
+    for one in given:
+        if isinstance(one, Agent) and one.name not in expected:
             found = unlike_scenario(scenario, one)
+        else:
+            like = expected[one.name]
+            frames = like.grasp_frames if isinstance(like, LiftedObject) else like.hands
+            found = difference(one.model, like.model, frames)
         if found:
             why = f"the model of {one.name} is not that of the result's scenario: {found}; solve again"
             raise InputError(str(file), NO_VALUE, why)

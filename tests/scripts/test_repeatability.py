@@ -18,7 +18,7 @@ def sampled(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, li
     """Return the table and the answers of three small scenarios, the last without a solution."""
     out = tmp_path_factory.mktemp("repeatability") / "answers.json"
     command = [sys.executable, str(SCRIPT), "--count", "3", "--out", str(out), "--set", "solver.time_limit=3600"]
-    command += ["--set", "solver.tries=4", "--set", "solver.intervals=16"]
+    command += ["--set", "solver.tries=4", "--set", "solver.intervals=10"]
     command += ["--only", "beside", "1 worker", "4 workers", "avx2", "plain"]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr

@@ -25,6 +25,7 @@ from liftopt.storage.reader import load_result
 from liftopt.storage.solved_scenario import scenario_or_solved
 from liftopt.storage.writer import save
 
+CHEAP = ("solver.intervals=10", "solver.starts=1")
 FILES = 5  # solution.nc, scenario.toml and three models
 
 
@@ -60,7 +61,7 @@ def test_folder_holds_the_contracts_files_and_nothing_else(kept: Any) -> None:
 
 
 def test_an_unsolved_result_is_read_back_as_unsolved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--set", "limits.max_grasp_force=5", "--set", "solver.starts=1"]
+    arguments = ["--set", "limits.max_grasp_force=5", "--set", "solver.starts=1", "--set", "solver.intervals=10"]
     assert main(["solve", "--out", str(tmp_path / "r"), *arguments]) == 3
     solution = load_result(tmp_path / "r")
     assert not solution.solved
@@ -69,7 +70,7 @@ def test_an_unsolved_result_is_read_back_as_unsolved(tmp_path: Path, capsys: pyt
 
 
 def test_saving_again_replaces_the_older_result(kept: Any, solved: Callable[..., Any], folder: Path) -> None:
-    newer = solved("table5_near", "solver.starts=2")
+    newer = solved("table5_near", *CHEAP)
     save(newer.solution, folder)
     assert load_result(folder).scenario.name == "table5_near"
     assert _contents(folder).keys() == _contents(kept.folder).keys()
@@ -82,7 +83,7 @@ INTERRUPTED = [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterru
 def test_failure_before_the_one_rename_leaves_the_older_result_whole(
     error: BaseException, folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    newer, before = solved("table5_near", "solver.starts=2").solution, _contents(folder)
+    newer, before = solved("table5_near", *CHEAP).solution, _contents(folder)
 
     def failing(source: Path, target: Path) -> None:
         assert target.name == "solution.nc"  # the first file to be moved, and the only one that counts
@@ -101,7 +102,7 @@ def test_failure_before_the_one_rename_leaves_the_older_result_whole(
 def test_failure_after_the_one_rename_leaves_the_newer_result_whole(
     at: int, error: BaseException, folder: Path, solved: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    newer, calls, replace = solved("table5_near", "solver.starts=2"), [], os.replace
+    newer, calls, replace = solved("table5_near", *CHEAP), [], os.replace
 
     def failing(source: Path, target: Path) -> None:
         calls.append(target)
@@ -130,7 +131,7 @@ def test_full_disk_while_writing_leaves_the_older_result_whole(
 
     monkeypatch.setattr(result_folder, "_write", full)
     with pytest.raises(InputError, match=r"--out = .*: cannot be written: No space left on device"):
-        save(solved("table5_near", "solver.starts=2").solution, folder)
+        save(solved("table5_near", *CHEAP).solution, folder)
     assert _contents(folder) == before
 
 

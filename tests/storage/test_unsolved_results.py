@@ -19,6 +19,7 @@ from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 
+TOO_FAST = ("solve", "--set", "duration=0.2", "--set", "solver.intervals=10", "--set", "solver.tries=4")
 # Writes one result on and on, until it is told to end.
 WRITE_ON_AND_ON = """
 import sys
@@ -57,7 +58,7 @@ def test_an_infeasible_solve_leaves_the_solved_result_and_says_where_its_iterate
     folder: Path, arguments: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = _files(folder)
-    assert main(["solve", "--set", "duration=0.2", *arguments]) == 3
+    assert main([*TOO_FAST, *arguments]) == 3
     out, err = capsys.readouterr()
     assert _files(folder) == before
     assert out == ""
@@ -71,7 +72,7 @@ def test_an_infeasible_solve_leaves_the_solved_result_and_says_where_its_iterate
 
 
 def test_json_says_where_the_iterate_is(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["solve", "--set", "duration=0.2", "--json"]) == 3
+    assert main([*TOO_FAST, "--json"]) == 3
     summary = json.loads(capsys.readouterr().out)
     assert (summary["solved"], summary["out"]) == (False, "results/table5/unsolved")
     assert all(Path(name).is_file() for name in summary["files"])

@@ -126,24 +126,20 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
     asked = dense.scenario.agents[agent.name]
     assert isinstance(asked, Robot)
     curves = robot_curves(agent, asked.model)
-    joints = JointMap.of(dense, agent.name)
-    topics = state_and_goal(joints)
+    topics = state_and_goal(JointMap.of(dense, agent.name))
     starts = [lift_start(record, dense.time, agent.q[:, agent.moving], topics) for record in records]
     angles = np.stack(
         [record.over_share(record.q, SHARE, at, duration) for record, (at, *_) in zip(records, starts, strict=True)]
     )
+    shown = np.array([curve.units.factor for curve in curves]) * angles
     for i, curve in enumerate(curves):
-        if joints.sliding[i]:
-            way = 1e3 * agent.q[:, agent.moving][:, i]
-            yield compared("robot_angle", curve.joint, curve.label, "mm", dense, way, 1e3 * angles[:, :, i])
-        else:
-            yield compared("robot_angle", curve.joint, curve.label, "deg", dense, curve.q, np.degrees(angles[:, :, i]))
-    planned = np.array([curve.q[0] for curve in curves])
-    for record, (_, how, known), own in zip(records, starts, np.degrees(angles), strict=True):
+        yield compared("robot_angle", curve.joint, curve.label, curve.units.shown, dense, curve.q, shown[:, :, i])
+    planned, turn = np.array([curve.q[0] for curve in curves]), ~agent.sliding[agent.moving]
+    for record, (_, how, known), own in zip(records, starts, shown, strict=True):
         notes.append(f"{record.source}: the lift begins {how} and lasts {duration:g} s")
         if known:
             notes.append(f"{record.source}: {known}")
-        off = float(np.abs(own[0] - planned)[~joints.sliding].max(initial=0.0))
+        off = float(np.abs(own[0] - planned)[turn].max(initial=0.0))
         if off > ELSEWHERE:
             notes.append(f"{record.source}: the robot starts {off:.0f} deg off the prediction: is it this lift?")
         if record.tau is None:
@@ -155,9 +151,7 @@ def _robot(dense: Solution, name: str | None, records: Sequence[RobotRecord], no
         return
     torques = np.stack([record.over_share(tau, SHARE, at, duration) for record, tau, at in felt])
     for i, curve in enumerate(curves):
-        yield compared(
-            "robot_torque", curve.joint, curve.label, joints.effort_unit(i), dense, curve.tau, torques[:, :, i]
-        )
+        yield compared("robot_torque", curve.joint, curve.label, curve.units.tau, dense, curve.tau, torques[:, :, i])
     notes.append(
         "efforts are taken for the joints' torques with gravity's part in them, positive as the joint's angle; "
         "JointState does not say which a robot means"

@@ -24,7 +24,7 @@ import pinocchio as pin
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.lab.mocap.recorded_lift import RecordedLift
-from liftopt.lab.mocap.recorded_whole_scenario import to_millimetres, whole_scenario
+from liftopt.lab.mocap.recorded_whole_scenario import to_thousandths, whole_scenario
 from liftopt.multibody.bounds import checked_number
 from liftopt.multibody.person.human import NAME, VIRTUAL
 from liftopt.multibody.urdf import joint_name, load_model
@@ -63,25 +63,25 @@ def recorded_scenario(lift: RecordedLift, object_mass: float, name: str = "recor
     place = hand - lift.over_lift(_base_travel(lift), 2)
     # The hand, mirrored through the object's centre, seen from above: between the two carriers lies this.
     depth = 2.0 * float(np.linalg.norm((lifted - hand)[:, :2], axis=1).mean())
-    start, end = ({"height": to_millimetres(z), "human_distance": to_millimetres(x)} for x, _, z in place)
+    start, end = ({"height": to_thousandths(z), "human_distance": to_thousandths(x)} for x, _, z in place)
     person = lift.subject
     return scenario_from_dict(
         {
             "schema": 2,
             "name": name,
-            "duration": to_millimetres(lift.carried[1] - lift.carried[0]),
+            "duration": to_thousandths(lift.carried[1] - lift.carried[0]),
             "agents": {
                 "human": {
                     "kind": "person",
-                    "stature": to_millimetres(person.stature),
+                    "stature": to_thousandths(person.stature),
                     "mass": person.mass,
                     "sex": person.sex,
                 },
                 "robot": {"kind": "robot", "model": "sawyer", "weight": 0.0},
             },
-            "object": {"mass": mass, "depth": to_millimetres(depth), "width": WIDTH, "height": HEIGHT},
+            "object": {"mass": mass, "depth": to_thousandths(depth), "width": WIDTH, "height": HEIGHT},
             "task": {
-                "standing_distance": to_millimetres(float(place[:, 0].mean()) + depth + REACH),
+                "standing_distance": to_thousandths(float(place[:, 0].mean()) + depth + REACH),
                 "start": start,
                 "end": end,
             },

@@ -56,7 +56,7 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
     grasps = {
         (f"human_{hand}" if len(holding) > 1 else "human"): {
             "place": _hold(hands[:, i], hand),
-            "position": [to_millimetres(x) for x in held[i]],
+            "position": [to_thousandths(x) for x in held[i]],
         }
         for i, hand in holding.items()
     }
@@ -64,11 +64,11 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
     tables: dict[str, Any] = {
         "schema": 2,
         "name": name,
-        "duration": to_millimetres(lift.carried[1] - lift.carried[0]),
+        "duration": to_thousandths(lift.carried[1] - lift.carried[0]),
         "agents": {
             "human": {
                 "kind": "person",
-                "stature": to_millimetres(person.stature),
+                "stature": to_thousandths(person.stature),
                 "mass": person.mass,
                 "sex": person.sex,
                 "body": "whole",
@@ -78,14 +78,14 @@ def whole_scenario(lift: RecordedLift, whole: RecordedWhole, mass: float, name: 
         "object": {
             "name": "box",
             "mass": mass,
-            "depth": max(to_millimetres(depth), LEAST),
-            "width": max(to_millimetres(width), LEAST),
-            "height": max(to_millimetres(height), HEIGHT),
+            "depth": max(to_thousandths(depth), LEAST),
+            "width": max(to_thousandths(width), LEAST),
+            "height": max(to_thousandths(height), HEIGHT),
             "grasps": grasps,
         },
         "task": {
-            "start": {"x": to_millimetres(start[0]), "z": to_millimetres(start[2])},
-            "end": {"x": to_millimetres(end[0]), "z": to_millimetres(end[2])},
+            "start": {"x": to_thousandths(start[0]), "z": to_thousandths(start[2])},
+            "end": {"x": to_thousandths(end[0]), "z": to_thousandths(end[2])},
         },
     }
     return scenario_from_dict(tables)
@@ -115,6 +115,6 @@ def _hold(hands: Array, hand: Hand) -> str:
     return max(near, key=lambda hold: near[hold])
 
 
-def to_millimetres(value: float) -> float:
+def to_thousandths(value: float) -> float:
     """Return a length [m] or a time [s] to three digits after the point."""
     return round(float(value), 3)

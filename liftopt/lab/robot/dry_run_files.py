@@ -15,7 +15,6 @@ from liftopt.lab.robot.dry_run_summary import Summary
 from liftopt.lab.robot.export_formats import goal_topic, state_topic
 from liftopt.lab.robot.ros_messages import JOINT_STATE, SECOND, RosMessages
 from liftopt.lab.robot.trajectory_files import goal_records
-from liftopt.types import Array
 
 HEAD = "head_pan"  # Sawyer reports it among its joints
 APART = 60 * SECOND  # the trials begin a minute from each other, the first a minute after time 0
@@ -94,13 +93,12 @@ def _plot(run: DryRun) -> bytes:
     with rc_context(STYLE):
         figure, grid = panels(len(run.trajectory.names) + 1, 2, height=0.9)
         for j, name in enumerate(run.trajectory.names):
-            slides = bool(run.trajectory.joints.sliding[j])
-            shown = _millimetres if slides else np.degrees
+            units = run.trajectory.joints.units[j]
             sides = zip(
                 grid[j],
-                (shown(run.planned_position[:, j]), run.planned_torque[:, j]),
-                ([shown(t.position[:, j]) for t in run.trials], [t.torque[:, j] for t in run.trials]),
-                ("mm", "N") if slides else ("deg", "Nm"),
+                (units.factor * run.planned_position[:, j], run.planned_torque[:, j]),
+                ([units.factor * t.position[:, j] for t in run.trials], [t.torque[:, j] for t in run.trials]),
+                (units.shown, units.tau),
                 strict=True,
             )
             for axes, planned, trials, unit in sides:
@@ -125,7 +123,3 @@ def _plot(run: DryRun) -> bytes:
         for axes in grid[-1]:
             axes.set_xlabel("time since the goal was sent [s]")
         return rendered(figure, "svg")
-
-
-def _millimetres(values: Array) -> Array:
-    return 1e3 * values

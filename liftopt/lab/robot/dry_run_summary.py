@@ -11,6 +11,7 @@ import numpy as np
 
 from liftopt.lab.robot.action_server import SPEED_RATIO
 from liftopt.lab.robot.dry_run import DryRun
+from liftopt.multibody.joint_units import units_of
 from liftopt.scenario.grasps import grasp_points
 from liftopt.scenario.model import Scenario
 from liftopt.solution.interpolation import linear
@@ -165,8 +166,9 @@ def summary_text(
     for joint, slides in zip(summary.joints, sliding or [False] * len(summary.joints), strict=True):
         errors = (joint.error_max, joint.error_rms, joint.error_at_end, joint.error_final)
         torques = (joint.torque_max, joint.planned_torque_max, joint.limit)
-        off = (f"{1e3 * e:.1f} mm" if slides else f"{np.degrees(e):.2f} deg" for e in errors)
-        table.add_row(joint.name, *off, *(f"{t:.1f} {'N' if slides else 'Nm'}" for t in torques))
+        units, digits = units_of(slides), 1 if slides else 2
+        off = (f"{units.factor * e:.{digits}f} {units.shown}" for e in errors)
+        table.add_row(joint.name, *off, *(f"{t:.1f} {units.tau}" for t in torques))
     text = StringIO()
     console = Console(file=text, width=200, color_system=None, force_terminal=False, markup=False, highlight=False)
     console.print(table)

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from xml.etree import ElementTree
 
 import numpy as np
 import numpy.typing as npt
 
 from liftopt.lab.meant import the_robot
 from liftopt.multibody.joint_meanings import joint_meanings
+from liftopt.multibody.joint_units import JointUnits, units_of
 from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.scenario.robot import Robot
+from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.solution.solution import Solution
 from liftopt.types import Array
-
-SAWYER = "sawyer"
 
 
 @dataclass(frozen=True)
@@ -65,13 +64,12 @@ class JointMap:
         own = [name.removeprefix(f"{arm.name}_") for name in arm.moving_joints]
         meant = [meanings.get(name, name) for name in own]
         signs = np.array([-1.0 if name.startswith("-") else 1.0 for name in meant])
-        slides = _sliding(solution.urdfs[arm.name])
         limits = arm.limits
         return cls(
             asked.model,
             tuple(name.removeprefix("-") for name in meant),
             signs,
-            np.array([name in slides for name in arm.moving_joints], dtype=bool),
+            arm.sliding[arm.moving],
             np.sort(signs * np.stack([limits.q_lower, limits.q_upper]), axis=0),
             limits.velocity,
             np.sort(signs * np.stack([limits.tau_lower, limits.tau_upper]), axis=0),
@@ -82,6 +80,11 @@ class JointMap:
     def is_sawyer(self) -> bool:
         """Whether it has Sawyer's trajectory action server."""
         return self.model == SAWYER
+
+    @property
+    def units(self) -> tuple[JointUnits, ...]:
+        """(n,) of the joints."""
+        return tuple(units_of(bool(slides)) for slides in self.sliding)
 
     def with_held(self) -> JointMap:
         """Return it with the joints that are held after those that move, as joints that stay where they are."""
@@ -98,22 +101,9 @@ class JointMap:
             (),
         )
 
-    def unit(self, joint: int, more: str = "") -> str:
-        """Return the unit of a joint's position, or with ``"/s"`` of its speed."""
-        return ("m" if self.sliding[joint] else "rad") + more
-
-    def effort_unit(self, joint: int) -> str:
-        """Return the unit of a joint's torque or force."""
-        return "N" if self.sliding[joint] else "Nm"
-
     def moves(self, joint: int) -> str:
         """Return the word for what a joint does."""
         return "slides" if self.sliding[joint] else "turns"
-
-
-def _sliding(urdf: str) -> set[str]:
-    return {str(joint.get("name")) for joint in ElementTree.fromstring(urdf).iter("joint")
-            if joint.get("type") == "prismatic"}  # fmt: skip
 
 
 def _held(asked: Robot) -> tuple[tuple[str, float], ...]:

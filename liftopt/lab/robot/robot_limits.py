@@ -7,6 +7,8 @@ intera_joint_trajectory_action/joint_trajectory_action.py (Apache-2.0).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from liftopt.errors import NO_VALUE, InputError
@@ -89,7 +91,7 @@ def check_motion(trajectory: JointTrajectory) -> None:
     worst = int(np.argmax(last))
     if last[worst] > STANDSTILL:
         joints = trajectory.joints
-        speed = f"{joints.moves(worst)} at {trajectory.velocity[-1, worst]:.3g} {joints.unit(worst, '/s')}"
+        speed = f"{joints.moves(worst)} at {trajectory.velocity[-1, worst]:.3g} {joints.units[worst].v}"
         where = f"{joints.names[worst]} {speed} at its end"
         raise InputError("RESULT", NO_VALUE, f"{where}, {trajectory.time[-1]:.3f} s; a trajectory must end at rest")
 
@@ -114,37 +116,33 @@ def _curve_excess(trajectory: JointTrajectory) -> str:
 
 
 def _position_excess(joints: JointMap, q: Array, time: Array, allowed: float = ROUNDING) -> str:
-    units = tuple(joints.unit(j) for j in range(len(joints.names)))
-    return _excess(joints, ("is at",) * len(units), q, joints.ends, time, units, allowed)
+    words = [("is at", unit.q) for unit in joints.units]
+    return _excess(joints, words, q, joints.ends, time, allowed)
 
 
 def _speed_excess(joints: JointMap, v: Array, time: Array, allowed: Array | float = ROUNDING) -> str:
-    each = range(len(joints.names))
-    units, moves = tuple(joints.unit(j, "/s") for j in each), tuple(f"{joints.moves(j)} at" for j in each)
-    return _excess(joints, moves, v, np.asarray(joints.speed * [[-1.0], [1.0]]), time, units, allowed)
+    words = [(f"{joints.moves(j)} at", unit.v) for j, unit in enumerate(joints.units)]
+    return _excess(joints, words, v, np.asarray(joints.speed * [[-1.0], [1.0]]), time, allowed)
 
 
 def _effort_excess(joints: JointMap, tau: Array, time: Array) -> str:
-    units = tuple(joints.effort_unit(j) for j in range(len(joints.names)))
-    return _excess(joints, ("needs",) * len(units), tau, joints.effort, time, units, ROUNDING)
+    words = [("needs", unit.tau) for unit in joints.units]
+    return _excess(joints, words, tau, joints.effort, time, ROUNDING)
 
 
 def _excess(
-    joints: JointMap,
-    what: tuple[str, ...],
-    values: Array,
-    ends: Array,
-    time: Array,
-    units: tuple[str, ...],
-    allowed: Array | float,
+    joints: JointMap, words: Sequence[tuple[str, str]], values: Array, ends: Array, time: Array, allowed: Array | float
 ) -> str:
-    """Return where values (K, n) pass their ends (2, n) by the most and by more than allowed; empty if they do not."""
+    """Return where values (K, n) pass their ends (2, n) by the most and by more than allowed; empty if they do not.
+
+    ``words`` are (n,) what a joint does, and the unit of its values.
+    """
     excess = np.maximum(ends[0] - values, values - ends[1])
-    k, j = np.unravel_index(int(np.argmax(excess - allowed)), excess.shape)
+    k, j = map(int, np.unravel_index(int(np.argmax(excess - allowed)), excess.shape))
     if excess[k, j] <= np.broadcast_to(allowed, excess.shape)[k, j]:
         return ""
-    (low, high), unit = ends[:, j], units[j]
+    (low, high), (what, unit) = ends[:, j], words[j]
     return (
-        f"{joints.names[j]} {what[j]} {values[k, j]:.4f} {unit} at {time[k]:.3f} s, {excess[k, j]:.2g} {unit} beyond "
+        f"{joints.names[j]} {what} {values[k, j]:.4f} {unit} at {time[k]:.3f} s, {excess[k, j]:.2g} {unit} beyond "
         f"its limits {low:g} to {high:g}"
     )

@@ -34,7 +34,7 @@ def _steps(trajectory: JointTrajectory) -> Iterator[str]:
     for k, where in ((0, "starts"), (-1, "ends")):
         j = int(np.argmax(np.abs(trajectory.acceleration[k])))
         if abs(size := float(trajectory.acceleration[k, j])) > STEP:
-            unit = joints.unit(j, "/s^2")
+            unit = joints.units[j].a
             steps.append(f"{where} with a step of acceleration ({size:.1f} {unit} in {joints.names[j]})")
     if steps:
         yield f"the motion {' and '.join(steps)}: solve with --set task.rest=acceleration to have none"

@@ -42,7 +42,7 @@ def check_start(trajectory: JointTrajectory, pose: Array, mode: Mode | None) -> 
     away = np.abs(trajectory.position[0] - pose) / np.where(joints.sliding, ARM, 1.0)
     worst = int(np.argmax(away))
     if away[worst] >= (most := accepted_start(mode)):
-        unit, scale = joints.unit(worst), ARM if joints.sliding[worst] else 1.0
+        unit, scale = joints.units[worst].q, ARM if joints.sliding[worst] else 1.0
         first = trajectory.position[0, worst]
         if mode is None:
             accepts = f"less than {scale * most:g} {unit} is accepted"
