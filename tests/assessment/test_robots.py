@@ -19,6 +19,7 @@ from liftopt.assessment.text import verdict_text
 from liftopt.assessment.who import Who
 from liftopt.commands.summary_text import print_details
 from liftopt.errors import NO_VALUE
+from liftopt.multibody.robots.catalogue import known_robots
 from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.scenario.build import agents_of
 from liftopt.solution.finding import Finding

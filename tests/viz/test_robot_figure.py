@@ -93,6 +93,5 @@ def test_light_sees_edges_of_a_box_and_none_on_a_ball() -> None:
 @pytest.mark.skipif(share_folder() is None, reason=NOT_INSTALLED)
 def test_a_piece_that_is_gone_before_there_are_few_enough_triangles_is_left_out() -> None:
     """Baxter with its left arm held has pieces so small that nothing is left of them on the way."""
-    known = known_robots()["baxter_right"]
-    found = figure_of(chosen_robot(name).examination().chain)
+    found = figure_of(chosen_robot("baxter_right").examination().chain)
     assert found and all(len(piece.mesh.triangles) for piece in found)
