@@ -54,6 +54,11 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let long files start first: one that starts last keeps one process busy and the others idle."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 class Solved(NamedTuple):
     """A real solution and the folder it was saved in; neither is to be changed."""
 

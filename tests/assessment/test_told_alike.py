@@ -20,6 +20,7 @@ from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 from liftopt.viz.report import report_html
 
+pytestmark = pytest.mark.long
 CONTRACT = {"code", "severity", "agent", "joint", "time", "value", "limit", "source", "message"}
 
 

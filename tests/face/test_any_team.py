@@ -20,6 +20,7 @@ import xarray as xr
 import liftopt as lo
 from liftopt.commands.cli import main
 
+pytestmark = pytest.mark.long
 TEAMS = {
     "two_people": {"anna": "person", "ben": "person"},
     "person_two_sawyers": {"human": "person", "left": "robot", "right": "robot"},

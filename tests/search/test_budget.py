@@ -19,6 +19,7 @@ from liftopt.search.solve import explain, find_lift, solve
 from liftopt.solution.finding import CAUTION
 from liftopt.solution.solution import Solution
 
+pytestmark = pytest.mark.long
 SMALL = ("solver.tries=6", "solver.starts=2", "solver.intervals=16", "solver.time_limit=3600")
 CASES = {
     "solved": SMALL,

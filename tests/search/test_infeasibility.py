@@ -31,6 +31,7 @@ from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 
+pytestmark = pytest.mark.long
 FAR = ("task.standing_distance=2.3",)
 MUCH_TOO_FAR = ("task.standing_distance=3",)
 HEAVY = ("object.mass=40",)

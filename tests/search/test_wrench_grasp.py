@@ -22,6 +22,7 @@ from liftopt.solution.summary import load_share, summary_dict
 from liftopt.solution.verify import verify
 from liftopt.storage.reader import load_result
 
+pytestmark = pytest.mark.long
 BOTH = ("human.grasp=wrench", "robot.grasp=wrench")
 FLAT = (*BOTH, "human.contact=flat", "human.friction=0.3")
 CHEAP = ("solver.name=banded", "solver.starts=2")

@@ -19,6 +19,7 @@ from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 
+pytestmark = pytest.mark.long
 TOO_FAST = ("solve", "--set", "duration=0.2", "--set", "solver.intervals=10", "--set", "solver.tries=4")
 # Writes one result on and on, until it is told to end.
 WRITE_ON_AND_ON = """

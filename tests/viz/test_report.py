@@ -19,6 +19,7 @@ from liftopt.solution.summary import summary_dict
 from liftopt.viz.report import report_html
 from liftopt.viz.report_tables import check_rows
 
+pytestmark = pytest.mark.long
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 LARGEST = 15_000_000  # bytes
 

@@ -18,6 +18,7 @@ from liftopt.viz.plots import drawn, plots_of
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report import report_html
 
+pytestmark = pytest.mark.long
 PARTS = {"legs": 3, "trunk": 3, "right arm": 7, "left arm": 7}
 
 

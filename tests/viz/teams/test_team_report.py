@@ -13,6 +13,8 @@ from matplotlib.figure import Figure
 from liftopt.viz.report import report_html
 from liftopt.viz.report_section import ReportSection, SectionFigure, SectionTable
 
+pytestmark = pytest.mark.long
+
 
 def _page(solution: Any, *sections: ReportSection) -> str:
     """Return the page without the playback and the drawings inside it."""
