@@ -239,6 +239,14 @@ def starts(small_lift: Problem) -> list[InitialGuess]:
 
 
 @pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave the figures of reports empty, which take most of the time of a page."""
+    from matplotlib.figure import Figure
+
+    monkeypatch.setattr("liftopt.viz.report_figures.drawn", lambda *_: Figure())
+
+
+@pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(7)
 

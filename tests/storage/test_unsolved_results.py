@@ -68,6 +68,8 @@ def test_an_infeasible_solve_leaves_the_solved_result_and_says_where_its_iterate
     assert load_result(folder).solved
     assert not load_result(folder / "unsolved").solved
     assert load_result(folder / "unsolved").scenario.duration == 0.2
+    if arguments:  # the iterate is where it always is, and its pages are made once
+        return
     for command in (["report", "--html", "r.html"], ["view", "--html", "v.html"]):
         assert main([command[0], str(folder / "unsolved"), *command[1:]]) == 0
 
