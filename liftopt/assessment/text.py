@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from shlex import quote
@@ -19,6 +20,7 @@ from liftopt.solution.finding import CAUTION, CLEARANCE, INFO, MATHEMATICS, PERS
 from liftopt.solution.solution import Solution
 
 WIDTH, MOST_LINES = 80, 25
+AFTER_NUMBER, HARD_SPACE = re.compile(r"(?<=\d) "), "\N{NO-BREAK SPACE}"
 HEAD = -1
 MARKS = {WARNING: "! ", CAUTION: "- ", INFO: ""}
 WORDS = {WARNING: "WARNING", CAUTION: "caution", INFO: "within limits"}
@@ -187,4 +189,7 @@ def _where(folder: Path | None) -> Iterable[str]:
 
 
 def _wrapped(text: str, first: str = "", then: str = "") -> list[str]:
-    return wrap(text, WIDTH, initial_indent=first, subsequent_indent=then, break_on_hyphens=False)
+    """Return lines of a text; a number and its unit stay together."""
+    whole = AFTER_NUMBER.sub(HARD_SPACE, text)
+    lines = wrap(whole, WIDTH, initial_indent=first, subsequent_indent=then, break_on_hyphens=False)
+    return [line.replace(HARD_SPACE, " ") for line in lines]
