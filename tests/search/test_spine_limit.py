@@ -96,7 +96,8 @@ def test_the_limit_holds_at_every_knot_and_is_verified(limited: Solution) -> Non
 
 
 def test_the_plot_shows_it(limited: Solution) -> None:
-    pressing = plot_of_spine(Lift.of(limited), limited["human"]).axes[0]
+    lift = Lift.of(limited)
+    pressing = plot_of_spine(lift, lift.dense["human"]).axes[0]
     assert "limit of this lift 3200 N" in [text.get_text() for text in pressing.texts]
     assert [3200.0, 3200.0] in [list(line.get_ydata()) for line in pressing.lines]
 
