@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from liftopt.assessment.grasp import cap_findings, share_finding, squeeze_finding
-from liftopt.assessment.joints import NEAR_LIMIT, Words, joint_findings
+from liftopt.assessment.joints import AT_LIMIT, NEAR_LIMIT, Words, joint_findings
 from liftopt.assessment.posture import PARTS, posture_finding, style_findings
 from liftopt.assessment.standing import standing_findings
 from liftopt.assessment.who import Who
 from liftopt.ergonomics.lift import subject_in
 from liftopt.ergonomics.measure import Measure
 from liftopt.ergonomics.measures import ergonomics_of
+from liftopt.ergonomics.spine import SpineLoad
 from liftopt.multibody.joint_meanings import joint_meanings
 from liftopt.multibody.person.provenance import subject_quantities, whole_quantities
 from liftopt.multibody.person.range_of_motion import RANGES, VELOCITY_SOURCE
@@ -30,6 +33,7 @@ def person_findings(fine: Solution, person: AgentTrajectory, who: Who) -> Iterat
     yield from joint_findings(fine, person, _words(who))
     for measure in ergonomics.measures:
         yield posture_finding(who, ergonomics, measure) if measure.code in PARTS else _guide(who, measure)
+    yield from _spine_limit(fine, who, ergonomics.spine)
     yield from standing_findings(fine, person, who)
     yield from style_findings(who, ergonomics, float(person.p_world_hold[0, 2]))
     if fine.object.grasp_position.shape[1] > 1:
@@ -72,6 +76,24 @@ def _guide(who: Who, measure: Measure) -> Finding:
         title,
         f"{name}{_for(who)} ({measure.scope}): {measure.result}. {measure.reading}",
         who.name, None, measure.time, measure.value, measure.limit, measure.unit, measure.source.told,
+    )  # fmt: skip
+
+
+def _spine_limit(fine: Solution, who: Who, load: SpineLoad) -> Iterator[Finding]:
+    """Give how near the spine comes to the limit that the scenario sets, if it does."""
+    most = fine.scenario.limits.spine_compression
+    if most is None:
+        return
+    k = int(np.argmax(load.compression))
+    peak, shapes = float(load.compression[k]), float(load.compression[k]) >= (1.0 - AT_LIMIT) * most
+    how = "shapes the lift: without it the spine would be pressed more" if shapes else "does not shape the lift"
+    yield Finding(
+        f"{PERSON}.spine_limit",
+        CAUTION if shapes else INFO,
+        f"compression of the lumbar spine {'at' if shapes else 'below'} its limit ({peak:.0f} of {most:g} N)",
+        f"The lumbar spine{who.of} is pressed with {peak:.0f} N at most, by the estimate with one muscle, and "
+        f"limits.spine_compression allows {most:g} N. The limit {how}.",
+        who.name, None, float(fine.time[k]), peak, most, "N", "limits.spine_compression of the scenario",
     )  # fmt: skip
 
 

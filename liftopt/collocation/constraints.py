@@ -36,7 +36,7 @@ class Block:
     Attributes:
         name: ``"grasp_closure"`` (6), ``"torque"`` (2), ``"workspace"`` (4), ``"grasp_force"``, ``"grasp_moment"``,
             ``"grasp_turn"``, ``"friction"``, ``"pressure"``, ``"sole_friction"``, ``"sole_pressure"``, ``"lean"``,
-            ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
+            ``"compression"``, ``"balance"`` (7), ``"velocity"``, ``"clearance"``.
         who: agent, grasp or object; of clearance, the two bodies by number.
         rows: where in g.
         labels: meaning of the rows at one knot; they repeat knot by knot.
@@ -183,6 +183,7 @@ def build_constraints(
             _flat_hand(rows, i, own, grasp)
         _soles(rows, i, own, agent)
         _lean(rows, i, own, agent)
+        _compression(rows, i, own, agent)
         _velocity(rows, i, agent.name, agent.moving_joints, agent.limits.velocity * task.duration)
     _balance(rows, len(agents), lifted, served_rows(agents, lifted, task.balance_tolerance), task.balance_tolerance)
     _velocity(rows, len(agents), lifted.name, OBJECT_COORDINATES, task.pose_velocity * task.duration)
@@ -258,6 +259,17 @@ def _lean(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:
         rows.add(rows.outputs_at(i, rows.knots, own.lean), 1.0)
         most = np.array([1.0 - np.cos(agent.lean.most)])
         rows.close("lean", agent.name, ("trunk",), np.array([-np.inf]), most, len(rows.knots))
+
+
+def _compression(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:
+    """The disc is pressed with no more than it may, whichever muscles pull; its limit is a bound and no factor."""
+    if agent.disc is None:
+        return
+    factors, m = agent.disc.factors / agent.disc.unit, len(agent.disc.muscles)
+    for output, own_factors in zip(range(own.disc.start, own.disc.stop), factors.T, strict=True):
+        rows.add(rows.outputs_at(i, rows.knots, np.full(m, output)), own_factors)
+    most = np.full(m, agent.disc.most / agent.disc.unit)
+    rows.close("compression", agent.name, agent.disc.muscles, np.full(m, -np.inf), most, len(rows.knots))
 
 
 def _soles(rows: _Rows, i: int, own: AgentOutputs, agent: Agent) -> None:

@@ -230,6 +230,12 @@ class SoftProblem(Problem):
             who, unit = [f"{block.who} {label}" for label in block.labels], "deg"
             most = np.arccos(1.0 - block.upper[0])
             amounts = np.degrees(np.arccos(np.clip(np.cos(most) - amounts, -1.0, 1.0)) - most)
+        elif block.name == "compression":
+            disc = self.team.agents[names.index(block.who)].disc
+            assert disc is not None
+            # Several rows tell the same compression, each with other muscles.
+            prices, amounts, who, unit = prices[:, :1], disc.unit * amounts.max(axis=1)[:, None], [block.who], "N"
+            share = amounts / disc.most
         elif block.name == PRESSURE:
             who = [f"{block.who} {label}" for label in block.labels]
         elif block.name == "velocity":

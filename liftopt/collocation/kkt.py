@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.collocation.kkt_agent import STEP, agent_knots
+from liftopt.collocation.kkt_agent import STEP
+from liftopt.collocation.kkt_disc import disc_agent_knots
 from liftopt.collocation.kkt_object import object_knots
 from liftopt.collocation.kkt_poses import link_poses, object_pose
 from liftopt.collocation.problem import Problem
@@ -112,5 +113,5 @@ def _evaluate(problem: Problem, part: int, y: Array, period: float) -> tuple[Arr
         moves = pose.part < len(team.agents)
         return link_poses(team.agents[pose.part], pose.joints, y) if moves else object_pose(y)
     if part < len(team.agents):
-        return agent_knots(team.agents[part], y, period)
+        return disc_agent_knots(team.agents[part], y, period)
     return object_knots(team.object, y, period, bare=all(grasp.is_point_contact for grasp in team.grasps))

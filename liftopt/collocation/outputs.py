@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from liftopt.collocation.layout import FORCE_SIZE
 from liftopt.collocation.wrench_dynamics import WRENCH_SIZE
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.disc import CUT_JOINTS
 
 # Of each hand: the grasp point, its squared force; and, where it is not only a force at a point, its squared moment,
 # the cosine of its angle on the object, and its wrench along the object's axes.
@@ -16,7 +17,7 @@ WITH_MOMENT = AT_A_POINT + 2 + WRENCH_SIZE
 
 @dataclass(frozen=True)
 class AgentOutputs:
-    """Where the outputs of an agent's kernel are: torques, then those of each hand, then those of the ground.
+    """Where the outputs of an agent's kernel are: torques, those of each hand, of the ground, and of a disc.
 
     A hand goes by the name of its frame.
 
@@ -24,8 +25,9 @@ class AgentOutputs:
         joints: number of moving joints.
         hands: all that the kernel has room for.
         of_a_hand: number of outputs of each.
-        stands: whether the ground's force and moment come last.
+        stands: whether the ground's force and moment come after those.
         leans: whether the trunk's lean comes after the torques.
+        pressed: whether what passes a disc comes last.
     """
 
     joints: int
@@ -33,6 +35,7 @@ class AgentOutputs:
     of_a_hand: int
     stands: bool
     leans: bool = False
+    pressed: bool = False
 
     @property
     def has_moments(self) -> bool:
@@ -76,9 +79,15 @@ class AgentOutputs:
         return slice(first, first + WRENCH_SIZE * self.stands)
 
     @property
+    def disc(self) -> slice:
+        """Axial force, lateral moment and moment that extends, through the disc [N, Nm, Nm]."""
+        first = self.ground.stop
+        return slice(first, first + CUT_JOINTS * self.pressed)
+
+    @property
     def size(self) -> int:
         """Number of all outputs."""
-        return int(self.ground.stop)
+        return int(self.disc.stop)
 
     def _part(self, hand: str, at: int, size: int) -> slice:
         first = self.lean.stop + self.hands.index(hand) * self.of_a_hand + at
@@ -89,4 +98,5 @@ def outputs_of(agent: Agent) -> AgentOutputs:
     """Return where the outputs of an agent's kernel are."""
     of_a_hand = AT_A_POINT if agent.pushes_at_a_point else WITH_MOMENT
     leans = not agent.is_simple and agent.lean is not None
-    return AgentOutputs(len(agent.posture), agent.hands, of_a_hand, not agent.is_simple, leans)
+    pressed = agent.disc is not None
+    return AgentOutputs(len(agent.posture), agent.hands, of_a_hand, not agent.is_simple, leans, pressed)

@@ -15,6 +15,7 @@ from liftopt.collocation.arm_dynamics import ArmTopology, arm_functions
 from liftopt.collocation.assembly import Nlp, Part, PartParameters, assemble, pack
 from liftopt.collocation.codegen.kernels import Builder, Kernel, load_kernels
 from liftopt.collocation.constraints import Constraints, build_constraints
+from liftopt.collocation.disc_dynamics import DiscTopology, disc_agent_functions
 from liftopt.collocation.dynamics import STRUCTURAL_ZERO, Topology, agent_functions, object_functions
 from liftopt.collocation.layout import FORCE_SIZE, Layout
 from liftopt.collocation.objective import Weights, agent_weights, object_weights
@@ -250,8 +251,12 @@ def kernel_requests(agents: tuple[Agent, ...], lifted: LiftedObject) -> list[tup
             base = np.eye(4) if agent.stance is None else agent.T_world_base
             grips = [own.get(hand, np.eye(3)) for hand in agent.hands]
             trunk = agent.lean.joint if agent.lean else ""
-            standing = StandingTopology.standing(model, agent.hands, base, *grips, trunk=trunk)
-            requests.append((standing_agent_functions, standing))
+            if agent.disc is None:
+                standing = StandingTopology.standing(model, agent.hands, base, *grips, trunk=trunk)
+                requests.append((standing_agent_functions, standing))
+            else:
+                pressed = DiscTopology.pressed(model, agent.hands, base, *grips, disc=agent.disc, trunk=trunk)
+                requests.append((disc_agent_functions, pressed))
     held = Topology.of(lifted.model, lifted.grasp_frames)
     if all(grasp.is_point_contact for agent in agents for grasp in agent.grasps):
         builder = object_functions
@@ -280,6 +285,8 @@ def _check(agents: tuple[Agent, ...], lifted: LiftedObject) -> None:
                 f"{agent.name}: holds with {', '.join(frames) or 'nothing'}; each grasp takes one of its hands, "
                 f"{', '.join(agent.hands)}, and no two the same"
             )
+        if agent.disc is not None and agent.is_simple:
+            raise ModelError(f"{agent.name}: a limit on its disc takes one who stands, or has several hands")
         weak = (agent.limits.tau_lower >= 0) | (agent.limits.tau_upper <= 0)
         for joint in np.array(agent.moving_joints)[weak]:
             raise ModelError(f"{joint}: torque limits must allow some torque in both directions")

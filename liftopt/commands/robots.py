@@ -67,6 +67,10 @@ def robots(args: argparse.Namespace) -> int:
                 raise InputError(f"--{option.replace('_', '-')}", value, "needs a ROBOT")
         write(_list_json() if args.json else captured(_print_list))
         return DONE
+    if args.scenario:
+        from liftopt.files.new_file import check_new
+
+        check_new("--scenario", Path(args.scenario))
     chosen = _chosen(args)
     known, found = chosen.known, chosen.examination()
     status = NOT_SOLVED if found.refused else DONE

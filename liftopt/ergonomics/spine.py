@@ -16,9 +16,10 @@ import numpy as np
 import pinocchio as pin
 
 from liftopt.ergonomics.lift import Lift, R_world_person, model_of, subject_in
-from liftopt.ergonomics.lumbosacral import UP, Lumbosacral, lumbosacral
 from liftopt.multibody.agent import Agent
+from liftopt.multibody.disc import Lumbosacral
 from liftopt.multibody.person.lumbar_levers import EXTENSOR, FLANK, FLEXOR
+from liftopt.multibody.person.lumbosacral import UP, lumbosacral
 from liftopt.multibody.sources import Source
 from liftopt.multibody.trajectory import AgentTrajectory, cross, turned
 from liftopt.types import Array

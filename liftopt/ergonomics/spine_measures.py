@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from liftopt.ergonomics.lumbosacral import SACRAL_SLOPE
 from liftopt.ergonomics.measure import Measure
 from liftopt.ergonomics.spine import SHEAR_FREQUENT, SHEAR_LIMIT, SHEAR_SOURCE, SpineLoad
 from liftopt.multibody.person.lumbar_levers import (
@@ -14,6 +13,7 @@ from liftopt.multibody.person.lumbar_levers import (
     EXTENSOR,
     LONG_EXTENSOR,
 )
+from liftopt.multibody.person.lumbosacral import SACRAL_SLOPE
 from liftopt.types import Array
 
 

@@ -1,4 +1,4 @@
-"""Files that are made and never written over: what a laboratory recorded cannot be recorded again."""
+"""Files that are made and never written over."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from liftopt.errors import InputError
 
-EXISTS = "exists already; what was recorded is never written over: name another file"
+EXISTS = "exists already and is never written over: name another file"
 
 
 def write_new(key: str, path: Path, text: str) -> None:
@@ -22,14 +22,30 @@ def write_new(key: str, path: Path, text: str) -> None:
     Raises:
         InputError: the file exists, or cannot be written.
     """
+    check_new(key, path)
     try:
-        if path.exists():
-            raise InputError(key, str(path), EXISTS)
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-") as work:
             part = Path(work) / "part"
             part.write_text(text, encoding="utf-8", newline="\n")
             os.replace(part, path)
+    except (OSError, ValueError) as error:
+        raise unwritable(key, path, error) from error
+
+
+def check_new(key: str, path: Path) -> None:
+    """Refuse a file that exists; for what takes long before it is written.
+
+    Args:
+        key: option that named the file, for messages.
+        path: of the file.
+
+    Raises:
+        InputError: the file exists, or there cannot be one of this name.
+    """
+    try:
+        if path.exists():
+            raise InputError(key, str(path), EXISTS)
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise unwritable(key, path, error) from error
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.errors import ModelError
+from liftopt.multibody.disc import Disc
 from liftopt.multibody.joint_units import JointUnits, units_of
 from liftopt.multibody.robots.data_finding import DataFinding
 from liftopt.types import Array
@@ -215,6 +216,7 @@ class Agent:
             share of what counts as one [1/Nm]; None of one who has none.
         stance: how it stands; None where its base holds it whatever it does.
         lean: how far its trunk may lean, or None for one without a trunk that does.
+        disc: of its spine that must not be pressed too much, or None where nothing is asked of it.
         joint_weights: (n,) factors of the joints' squared torques in the objective, or None where all are one.
         remarks: what was noticed about the data that it was made of.
         shares_kernels: whether it is a serial arm, simple, whose joints turn about or slide along their z axes, and has
@@ -235,6 +237,7 @@ class Agent:
     spine: Array | None = None
     stance: Stance | None = None
     lean: Lean | None = None
+    disc: Disc | None = None
     joint_weights: Array | None = None
     remarks: tuple[DataFinding, ...] = ()
     shares_kernels: bool = False

@@ -56,7 +56,8 @@ def _bare_agent(scenario: Scenario, name: str, urdf: str | None) -> Agent:
     place = Placement.at(*stand_of(scenario, name))
     if who.body == "arm":
         return human_agent(subject_of(who), urdf, name=name, place=place)
-    return whole_human_agent(subject_of(who), urdf, name=name, place=place, hands=who.hands)
+    most = scenario.limits.spine_compression
+    return whole_human_agent(subject_of(who), urdf, name=name, place=place, hands=who.hands, compression=most)
 
 
 def agent_key(scenario: Scenario, name: str) -> Hashable:
@@ -64,7 +65,8 @@ def agent_key(scenario: Scenario, name: str) -> Hashable:
     own = [hold for hold in placed_grasps(scenario) if hold.agent == name]
     holds = tuple((hold.name, hold.hold, hold.quarters, holds_from_below(scenario, hold)) for hold in own)
     entries = tuple(value for key, value in scenario.agents[name] if key != "weight")
-    return name, entries, stand_of(scenario, name), holds, scenario.objective.preset
+    limit = scenario.limits.spine_compression if scenario.agents[name].kind == "person" else None
+    return name, entries, stand_of(scenario, name), holds, scenario.objective.preset, limit
 
 
 def object_key(scenario: Scenario) -> Hashable:

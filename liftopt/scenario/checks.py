@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import Counter
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.files.entries import FREE
+from liftopt.files.entries import FREE, OFF
 from liftopt.scenario.agent_fields import NAME, NAMES
+from liftopt.scenario.agents import Person
 from liftopt.scenario.fields import ScenarioFields
 from liftopt.scenario.grasp_checks import check_grasps
 from liftopt.scenario.grasps import middle_of_hands
@@ -31,6 +32,7 @@ def check(scenario: ScenarioFields) -> None:
     for name in scenario.agents:
         stand_of(scenario, name)
     _check_obstacles(scenario)
+    _check_spine(scenario)
     check_grasps(scenario)
     for end in ("start", "end"):
         _check_place(scenario, end)
@@ -62,6 +64,18 @@ def _check_obstacles(scenario: ScenarioFields) -> None:
         if obstacle.name in seen:
             raise InputError("obstacles.name", obstacle.name, f"{ELSEWHERE}; give the obstacle another one")
         seen.add(str(obstacle.name))
+
+
+def _check_spine(scenario: ScenarioFields) -> None:
+    key, most = "limits.spine_compression", scenario.limits.spine_compression
+    if most is None:
+        return
+    people = [(name, agent) for name, agent in scenario.agents.items() if isinstance(agent, Person)]
+    if not people:
+        raise InputError(key, most, f'must be "{OFF}" where no person lifts')
+    for name, person in people:
+        if person.body != "whole":
+            raise InputError(key, most, f'takes people with body = "whole"; set {name}.body = "whole", or "{OFF}" here')
 
 
 def _check_weights(scenario: ScenarioFields) -> None:

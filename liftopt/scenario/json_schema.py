@@ -37,7 +37,9 @@ def _as_in_files(node: Any) -> Any:
         return [_as_in_files(inner) for inner in node]
     if not isinstance(node, dict):
         return node
-    found = {key: _as_in_files(inner) for key, inner in node.items() if key not in ("word", "allowed", "title")}
+    # A default of None stands for the word too, and what is left out is the default.
+    kept = {key: inner for key, inner in node.items() if key not in ("word", "allowed", "title") and inner is not None}
+    found = {key: _as_in_files(inner) for key, inner in kept.items()}
     if isinstance(found.get("description"), str):  # of a docstring the first paragraph
         found["description"] = found["description"].partition("\n\n")[0].replace("\n", " ")
         if not found["description"]:
@@ -48,6 +50,4 @@ def _as_in_files(node: Any) -> Any:
             kinds.append({"const": node["word"]})
         found.pop("anyOf")
         found |= kinds[0] if len(kinds) == 1 else {"anyOf": kinds}
-    if found.get("default", 0) is None:
-        found.pop("default")
     return found

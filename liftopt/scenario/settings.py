@@ -43,6 +43,9 @@ class Limits(Section):
     clearance: Annotated[
         float | None, free_number("least distance between bodies that do not touch", "m", 0.0, 1.0, OFF), OrOff
     ] = 0.0
+    spine_compression: Annotated[
+        float | None, free_number("largest compression of a whole person's spine at L5/S1", "N", 500.0, 2e4, OFF), OrOff
+    ] = None
 
 
 class Solver(Section):

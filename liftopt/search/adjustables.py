@@ -84,11 +84,11 @@ class Adjustable:
 
 _REACH, _MOTION = (
     frozenset({"grasp_closure", "workspace", "clearance"}),
-    frozenset({"grasp_closure", "workspace", "clearance", "torque", "velocity"}),
+    frozenset({"grasp_closure", "workspace", "clearance", "torque", "velocity", "compression"}),
 )
 _TURN = frozenset({"grasp_turn"})
-_STRENGTH = frozenset({"torque", "grasp_force"})
-_POSTURE = _REACH | {"torque"}
+_STRENGTH = frozenset({"torque", "grasp_force", "compression"})
+_POSTURE = _REACH | {"torque", "compression"}
 _CLEARANCE = frozenset({"clearance"})
 
 
@@ -96,11 +96,15 @@ def adjustables(scenario: Scenario) -> list[Adjustable]:
     """Return what may be changed in a scenario, the simplest first."""
     found = [
         Adjustable(("duration",), 0.01, 0.25, "", "at least {value:.2f} s",
-                   frozenset({"velocity", "torque", "grasp_force", "grasp_closure"}), 600, relative=True),
+                   _STRENGTH | {"velocity", "grasp_closure"}, 600, relative=True),
         Adjustable(("object.mass",), 0.1, 0.25, "object at most {value:.1f} kg", "", _STRENGTH, 512, relative=True),
         Adjustable(("limits.max_grasp_force",), 1.0, 0.1, "", "grasp force of up to {value:.0f} N",
                    frozenset({"grasp_force"}), 512, relative=True),
     ]  # fmt: skip
+    if scenario.limits.spine_compression is not None:
+        more = "compression of the spine of up to {value:.0f} N"
+        of_spine = frozenset({"compression"})
+        found.append(Adjustable(("limits.spine_compression",), 50.0, 0.1, "", more, of_spine, 512, relative=True))
     if (away := distance_key(scenario)) is not None:
         who = _base(scenario, partner(scenario) or "")
         nearer, farther = f"{who} {{change:.2f}} m nearer", f"{who} {{change:.2f}} m farther away"

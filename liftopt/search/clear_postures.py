@@ -15,21 +15,17 @@ import numpy as np
 
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.separating_planes import SeparatingPlanes
-from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.deadline import Deadline
-from liftopt.collocation.solvers.result import Solver
 from liftopt.errors import SolverError
 from liftopt.search.clear_end import ClearEnd
-from liftopt.search.feasibility_screen import stronger
+from liftopt.search.clear_still import ClearStill, posture_of
 from liftopt.search.held_off import led_ahead
 from liftopt.search.infeasibility import LeastViolation, find_least_violation
 from liftopt.search.initial_guess import SAME_POSTURE, InitialGuess, InitialGuessSet
 from liftopt.search.make_clear import CLEAR, MARGIN, WATCHED, Clearer, Pairs
 from liftopt.search.moves import find_moves
-from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
-from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture, distinct, seed_coordinates
+from liftopt.search.postures import MAX_ITERATIONS, Posture, distinct, seed_coordinates
 from liftopt.search.session import Session
-from liftopt.search.solid_distances import SolidDistances, solid_distances
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 from liftopt.types import Array
 
@@ -37,8 +33,6 @@ SEEDS = 96
 # Of the postures found at an end so many are to be made clear, and so many are tried, the cheapest first.
 WANTED, MOST = 6, 32
 ROUNDS = 4  # solves of one posture, each with new planes
-# A motion may begin to fall at its ends, so that it takes somewhat less strength than holding still there.
-RELIEF = 1.1
 # What is in the way at rest is in the way of every motion where it is more than this [m, deg, share of a limit].
 DECISIVE = {"m": 0.01, "deg": 5.0}
 DECISIVE_SHARE = 0.1
@@ -89,16 +83,15 @@ class _End:
     def __init__(self, session: Session, clearer: Clearer, pose: Array) -> None:
         self.session, self.pose = session, pose
         self.still = session.postures.problem.at_pose(pose)
-        self.postures = stronger(session.postures.problem, RELIEF)
-        self.problem = self.postures.problem.at_pose(pose)
-        self.clearer = replace(clearer, solver=self._solver)
-        self._solvers: dict[bool, Solver] = {}
+        self.at_rest = ClearStill(clearer, session.postures)
+        self.problem = self.at_rest.postures.problem.at_pose(pose)
+        self.clearer = self.at_rest.clearer
 
     def searched(self, known: Sequence[Array]) -> ClearEnd:
         """Return clear postures, from the coordinates that are ``known`` and from random seeds."""
         rng = np.random.default_rng(self.session.scenario.solver.seed)
         seeds = [*known, *(seed_coordinates(self.problem, self.pose, rng if i else None) for i in range(SEEDS))]
-        found = [p.rounded() for p in self.postures.search(self.pose, seeds, self._deadline) if p]
+        found = [p.rounded() for p in self.at_rest.postures.search(self.pose, seeds, self._deadline) if p]
         if not found:
             layout = self.problem.layout
             starts = [self.problem.pack(q[None], np.zeros((1, layout.force.shape[1]))) for q in known[:EXPLAINED]]
@@ -126,12 +119,9 @@ class _End:
         """Yield a posture, and then others with the object farther from whoever holds it."""
         x = self.problem.pack(posture.coordinates[None], posture.force[None])
         yield x
-        deep = np.flatnonzero(self._look(x).distance[0] < self.clearer.asked - CLEAR)
+        deep = np.flatnonzero(self.at_rest.look(self.problem, x).distance[0] < self.clearer.asked - CLEAR)
         for result in led_ahead(self.clearer, self.problem, x, deep.tolist()):
             yield result.x
-
-    def _look(self, x: Array) -> SolidDistances:
-        return solid_distances(self.clearer.solids, self.problem, self.problem.unpack(x)[0], NEAR)
 
     def _made_clear(self, x: Array, cost: float) -> tuple[Posture | None, float]:
         """Return the clear posture that one of a cost leads to, or None and how deep its deepest overlap is [m]."""
@@ -139,37 +129,19 @@ class _End:
         planes: SeparatingPlanes | None = None
         depth, posture = np.inf, None
         for turn in range(ROUNDS + 1):
-            found = self._look(x)
+            found = self.at_rest.look(self.problem, x)
             room = found.distance[0] - self.clearer.asked
             depth = min(depth, -float(room.min()))
             if room.min() >= -CLEAR and (turn == 0 or posture):
-                return posture or self._posture(x, cost), 0.0
+                return posture or posture_of(self.problem, x, cost), 0.0
             if turn == ROUNDS or (turn and posture is None):
                 break
             watched = np.union1d(watched, np.flatnonzero(room < WATCHED))
-            planes = self._planes(found, watched, MARGIN, planes)
+            planes = self.at_rest.planes(found, watched, MARGIN, planes)
             apart = self.problem.apart(planes)
-            result = self._solver(apart).solve(x, deadline=self._deadline, problem=apart, most=MAX_ITERATIONS)
-            x, posture = result.x, self._posture(result.x, result.objective) if result.converged else None
+            result = self.clearer.solver(apart).solve(x, deadline=self._deadline, problem=apart, most=MAX_ITERATIONS)
+            x, posture = result.x, posture_of(self.problem, result.x, result.objective) if result.converged else None
         return None, depth
-
-    def _planes(
-        self, found: SolidDistances, pairs: Pairs, margin: float, like: SeparatingPlanes | None = None
-    ) -> SeparatingPlanes:
-        crossing = frozenset(np.flatnonzero(found.distance[0] < self.clearer.asked - CLEAR).tolist())
-        options = PlaneOptions(self.clearer.clearance + margin, margin, None, crossing)
-        return choose_planes(self.clearer.solids, found, pairs, options, like)
-
-    def _posture(self, x: Array, cost: float) -> Posture:
-        control, force = self.problem.unpack(x)
-        return Posture(control[0], force[0], cost).rounded()
-
-    def _solver(self, problem: Problem) -> Solver:
-        kept = self._solvers.get(problem.planes is not None)
-        if kept is None or not kept.takes(problem):
-            kept = Banded(problem, BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH))
-            self._solvers[problem.planes is not None] = kept
-        return kept
 
     def _explained(self, starts: Sequence[Array]) -> ClearEnd:
         """Return the posture that breaks least with bodies apart, of those that the starts lead to, and what it breaks.
@@ -179,7 +151,7 @@ class _End:
         eased = self._least(self.problem, starts)
         if eased is None:
             return ClearEnd(())
-        nearest = (self._posture(eased.x, np.inf),)
+        nearest = (posture_of(self.problem, eased.x, np.inf),)
         if not any(map(_is_decisive, eased.reasons)):
             return ClearEnd(nearest)
         least = self._least(self.still, [eased.x])
@@ -188,9 +160,9 @@ class _End:
     def _least(self, problem: Problem, starts: Sequence[Array]) -> LeastViolation | None:
         found: list[LeastViolation] = []
         for x in starts:
-            look = self._look(x)
+            look = self.at_rest.look(self.problem, x)
             pairs = np.flatnonzero(look.distance[0] < self.clearer.asked + WATCHED)
-            least = find_least_violation(problem.apart(self._planes(look, pairs, 0.0)), [x], self._deadline)
+            least = find_least_violation(problem.apart(self.at_rest.planes(look, pairs, 0.0)), [x], self._deadline)
             found += [least] if least else []
         return min(found, key=lambda least: (not least.sure, least.price), default=None)
 

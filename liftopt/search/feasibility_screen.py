@@ -11,6 +11,7 @@ from liftopt.collocation.layout import FORCE_SIZE, OBJECT_SIZE
 from liftopt.collocation.problem import Problem
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.ergonomics.spine import load_through
 from liftopt.multibody.trajectory import agent_trajectory
 from liftopt.search.inverse_kinematics import InverseKinematics
 from liftopt.search.postures import Posture, PostureSolver, distinct, seed_coordinates
@@ -176,6 +177,7 @@ def _strength(
         "torque": "the torque limit of",
         "grasp_force": "the grasp force cap of",
         "grasp_moment": "the grasp moment cap of",
+        "compression": "the limit on the compression of the lumbar spine of",
     }
     shares = [strong, *(share for share, _, _ in exceeded[1:NAMED])]
     pairs = zip(shares, exceeded[:NAMED], strict=True)
@@ -196,7 +198,8 @@ def stronger(problem: Problem, factor: float) -> PostureSolver:
         limits = agent.limits
         stronger = replace(limits, tau_lower=factor * limits.tau_lower, tau_upper=factor * limits.tau_upper)
         grasps = tuple(replace(grasp, max_moment=factor * grasp.max_moment) for grasp in agent.grasps)
-        agents.append(replace(agent, limits=stronger, grasps=grasps))
+        disc = agent.disc and replace(agent.disc, most=factor * agent.disc.most)
+        agents.append(replace(agent, limits=stronger, grasps=grasps, disc=disc))
     task = replace(problem.task, max_grasp_force=factor * problem.task.max_grasp_force)
     return PostureSolver(replace(problem.team, agents=tuple(agents)), task)
 
@@ -217,6 +220,9 @@ def _uses(problem: Problem, posture: Posture) -> list[tuple[float, str, str]]:
         tau = still.tau[0, still.moving]
         share = np.where(tau > 0, tau / agent.limits.tau_upper, tau / agent.limits.tau_lower)
         candidates += [(float(s), "torque", joint) for s, joint in zip(share, agent.moving_joints, strict=True)]
+        if agent.disc is not None:
+            load = load_through(agent, still, agent.disc.upright, agent.disc.place)
+            candidates.append((float(load.compression[0]) / agent.disc.most, "compression", agent.name))
         for f, m, grasp in zip(force[0], moment[0], agent.grasps, strict=True):
             candidates.append((float(np.linalg.norm(f)) / problem.task.max_grasp_force, "grasp_force", grasp.name))
             if grasp.moments:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from liftopt.collocation.solvers.deadline import Deadline
+from liftopt.collocation.solvers.deadline import NEVER
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.multibody.robots.grasp_frames import FINGER
 from liftopt.multibody.robots.robot_solids import robot_solids
@@ -35,7 +35,6 @@ PAYLOAD_SHARE = 0.9  # of the payload, for the gripper and half of the box
 GRIPPER = {"length": 0.15, "mass": 0.4}
 # A hand whose frame is as near to the last joint [m] holds farther out, by this share of the robot's reach.
 AT_WRIST, FINGERS_SHARE = 0.01, 0.2
-PATIENCE = 60.0  # [s] for all trials together
 # What does not move of a robot that is taller than this stands on the floor itself: a trunk on legs or wheels [m];
 # unless its tool would be lower than that above the floor.
 TALL, LOW = 0.5, 0.4
@@ -77,14 +76,14 @@ def first_scenario(robot: Mapping[str, Any], name: str, progress: Progress | Non
     Raises:
         InputError: the robot cannot be read or used, or no such scenario was found; it says what was in the way.
     """
-    deadline, cache, known = Deadline.after(PATIENCE), SolverCache(), _known(robot)
+    cache, known = SolverCache(), _known(robot)
     why = f"its payload of {known.payload:g} kg bears none of the boxes that were tried"
     for mass, share in product(MASSES, SHARES):
-        if deadline.passed or not known.bears(mass):
+        if not known.bears(mass):
             continue
         tables = _placed(known, name, mass, share)
         scenario = scenario_from_dict(tables)
-        reasons, _ = screen_ends(cache.problem(scenario, motions_of(scenario), progress), 0, deadline)
+        reasons, _ = screen_ends(cache.problem(scenario, motions_of(scenario), progress), 0, NEVER)
         if not reasons:
             return tables
         why = reasons[0].message

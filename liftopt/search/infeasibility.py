@@ -117,6 +117,7 @@ def _in_words(problem: Problem, violation: Violation) -> InfeasibilityReason:
         "sole_friction": f"the feet of {who} slip, {amount:.3g} N beyond their friction on the floor {at}",
         "sole_pressure": f"{who}, {amount:.3f} m beyond the soles {at}: the feet leave the floor",
         "lean": f"{who} leans {amount:.0f} deg farther than it may {at}",
+        "compression": f"the lumbar spine of {who} is pressed with {amount:.3g} N ({share}) more than its limit {at}",
         "velocity": f"{who} has to be {amount:.2g} {violation.unit} ({share}) faster than its speed limit {at}",
     }
     beyond = 0.0 if violation.unit == "m" else violation.share

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from liftopt.search.candidate import Candidate
+from liftopt.search.clear_paths import paths_between
 from liftopt.search.clear_postures import clear_ends, starts_between
 from liftopt.search.elastic_clearing import cleared_elastically
 from liftopt.search.held_off import held_off
@@ -45,6 +46,7 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
         return [c for c in optima if c.result.objective <= PROMISING * optima[0].result.objective][:wanted]
     found: list[Candidate] = []
     failed: list[Attempt] = []
+    held_off_before = False
     for candidate in optima[: FAILING * wanted]:
         best = min(map(objective_of, found), default=None)
         if best is not None and (candidate.result.objective > PROMISING * best or len(found) == wanted):
@@ -57,12 +59,13 @@ def keep_clear(session: Session, optima: Sequence[Candidate], rough: float) -> l
         else:
             failed.append(attempt)
         if not found and len(failed) == wanted:
+            held_off_before = True
             found = _out_of_the_lap(clearer, failed[:PASSED])
             if found:
                 break
     if not found:
         session.blocked = failed
-        found = _anyhow(session, clearer, failed[:PASSED])
+        found = _anyhow(session, clearer, failed[:PASSED], held_off_before)
         session.detoured = bool(failed) and not found
     if not found:
         return []
@@ -93,8 +96,17 @@ def first_clear(session: Session, candidates: Sequence[Candidate]) -> list[Candi
     return [*_anyhow(session, clearer, session.blocked[:PASSED]), *candidates]
 
 
-def _anyhow(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
-    """Return clear optima that a detour leads to, from what the overlaps alone did not lead to any."""
+def _anyhow(
+    session: Session, clearer: Clearer, failed: Sequence[Attempt], held_off_before: bool = False
+) -> list[Candidate]:
+    """Return clear optima that a detour leads to, from what the overlaps alone did not lead to any.
+
+    Args:
+        session: of the search.
+        clearer: of the team.
+        failed: what to start from.
+        held_off_before: whether the object was held off in these before, to no avail.
+    """
     if failed and not session.held:
         motions = [attempt.origin.result.x for attempt in failed]
         session.held = clear_ends(session, clearer, failed[0].origin.problem, motions)
@@ -102,9 +114,10 @@ def _anyhow(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> li
         return []
     return (
         _passing(session, clearer, failed)
-        or _out_of_the_lap(clearer, failed)
+        or (not held_off_before and _out_of_the_lap(clearer, failed))
         or _other_sides(clearer, failed)
         or _between_clear_postures(session, clearer, failed)
+        or _along_clear_postures(session, clearer, failed)
     )
 
 
@@ -124,6 +137,20 @@ def _between_clear_postures(session: Session, clearer: Clearer, failed: Sequence
                 also |= attempt.deep
                 attempt = cleared_elastically(clearer, motion, also)
             found += [attempt.candidate] if attempt is not None and attempt.clear else []
+    return found
+
+
+def _along_clear_postures(session: Session, clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
+    """Return clear optima that motions along clear postures, from one end to the other, lead to."""
+    found: list[Candidate] = []
+    for first in failed[:1]:
+        origin = first.origin
+        for start in paths_between(session, clearer, origin.problem, origin.spline):
+            motion = replace(origin, start=start.name, result=replace(origin.result, x=start.x, converged=False))
+            attempt = clearer.make_clear(motion, polish=False, also=first.deep)
+            found += [attempt.candidate] if attempt.clear else []
+            if len(found) == HELD_OFF:
+                break
     return found
 
 

@@ -58,10 +58,14 @@ def ship(folder: str, every_processor: bool = False) -> bool:
 
 
 def shipped_requests() -> Iterator[list[Request]]:
-    """Give what to generate kernels from, a team at a time: of one arm each, of a whole body, and of serial arms."""
+    """Give what to generate kernels from, a team at a time: of one arm each, of a whole body, and of serial arms.
+
+    The whole body comes without and with a limit on its spine.
+    """
     for grasp in get_args(GRASPS):
         yield _of_team(f"human.grasp={grasp}", f"robot.grasp={grasp}")
     yield _of_team("human.body=whole")
+    yield _of_team("human.body=whole", "limits.spine_compression=3400")
     scenario = load_scenario(changes=["human.body=whole"])
     agents = agents_of(scenario)
     for count in range(1, MOST_GRASPS + 1):

@@ -16,6 +16,7 @@ from liftopt.collocation.soles import sole_rows
 from liftopt.collocation.solvers.result import SolverResult
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.task import OBJECT_COORDINATES
+from liftopt.ergonomics.spine import load_through
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.leaning import trunk_tilt
 from liftopt.multibody.solid_pairs import solid_pairs
@@ -129,6 +130,10 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         if model.lean is not None:
             beyond = np.cos(model.lean.most) - 1.0 + trunk_tilt(model, trajectory.q)
             checks.append(_worst("lean of the trunk", beyond[:, None], limit, "1 - cos", [model.name], motion.time))
+        if model.disc is not None:
+            load = load_through(model, trajectory, model.disc.upright, model.disc.place)
+            excess = load.compression[:, None] - model.disc.most
+            checks.append(_worst("compression of the spine", excess, limit, "N", [model.name], motion.time))
     # np.maximum lets a NaN through where max would hide it.
     return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
 

@@ -13,14 +13,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from liftopt.ergonomics.lumbosacral import Lumbosacral, lumbosacral
 from liftopt.ergonomics.spine import SpineLoad, load_through
 from liftopt.ergonomics.spine_measures import spine_measures
 from liftopt.multibody.agent import Agent
 from liftopt.multibody.dh import rotation_z
+from liftopt.multibody.disc import Lumbosacral
 from liftopt.multibody.person.anthropometry import landmarks, link_lengths
 from liftopt.multibody.person.human import human_agent
 from liftopt.multibody.person.lumbar_levers import EXTENSOR, FLANK, FLEXOR
+from liftopt.multibody.person.lumbosacral import lumbosacral
 from liftopt.multibody.person.segments import SEGMENTS, segment_mass
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.person.whole_body import whole_human_agent

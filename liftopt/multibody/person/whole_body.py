@@ -19,7 +19,8 @@ from liftopt.multibody.person.bodies import whole_bodies
 from liftopt.multibody.person.comfort import human_lean, whole_comfort
 from liftopt.multibody.person.human import NAME, ORIGIN, POSTURE_DEG, human_root, joint_bounds
 from liftopt.multibody.person.human_shapes import whole_shapes
-from liftopt.multibody.person.lumbar_levers import spine_shares
+from liftopt.multibody.person.lumbar_levers import BEND, spine_shares
+from liftopt.multibody.person.lumbosacral import pressed_disc
 from liftopt.multibody.person.stance import human_stance
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.person.whole_joints import ARM, HANDS, JOINTS, TRUNK, table_joint, whole_limits
@@ -104,6 +105,7 @@ def whole_human_agent(
     name: str = NAME,
     place: Placement = ORIGIN,
     hands: Sequence[str] = HANDS,
+    compression: float | None = None,
 ) -> Agent:
     """Return the subject as an agent that stands on two feet and holds with one hand or both.
 
@@ -116,9 +118,11 @@ def whole_human_agent(
         name: begins the names of its joints and links.
         place: of the feet.
         hands: that hold, ``"right"``, ``"left"`` or both, in the order of the results.
+        compression: largest of the lumbar spine at L5/S1 [N]; None where nothing is asked of it.
     """
     text, ahead = urdf or whole_human_urdf(subject, name, place), place.ahead
-    degrees = POSTURE_DEG | LEG_POSTURE_DEG
+    degrees, upright = POSTURE_DEG | LEG_POSTURE_DEG, place.T_world_base[:3, :3]
+    base = joint_name(name, BEND)
     return Agent(
         name=name,
         kind="person",
@@ -134,6 +138,7 @@ def whole_human_agent(
         spine=spine_shares(JOINTS),
         stance=human_stance(subject),
         lean=human_lean(joint_name(name, TRUNK[-1])),
+        disc=None if compression is None else pressed_disc(subject, base, upright, compression),
     )
 
 

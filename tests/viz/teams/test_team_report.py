@@ -122,9 +122,9 @@ def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any) -
     assert _section(page, "trial").rstrip().endswith("A note.")
 
 
-def test_heights_of_an_object_that_has_a_place_of_its_own_are_those_of_its_underside(two_people: Any) -> None:
-    """The centre at 1 and 1.3 m of a box 0.25 m high."""
+def test_heights_of_an_object_that_has_a_place_of_its_own_are_those_of_where_it_is_held(two_people: Any) -> None:
+    """The centre at 1 and 1.3 m of a box 0.25 m high, which is held at its lower edges."""
     places = {end: {"x": 0.65, "z": z} for end, z in (("start", 1.0), ("end", 1.3))}
     scenario = two_people.solution.scenario.replace({f"task.{end}": place for end, place in places.items()})
     page = _page(replace(two_people.solution, scenario=scenario))
-    assert "from 0.875 to 1.175 m (height of its underside) in" in page
+    assert "from 0.875 to 1.175 m (height of the edges they hold) in" in page

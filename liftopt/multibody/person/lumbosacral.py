@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import cos, radians, sin
 
 import numpy as np
 import pinocchio as pin
 
+from liftopt.multibody.disc import Disc, Lumbosacral
 from liftopt.multibody.person.anthropometry import landmarks, link_lengths
+from liftopt.multibody.person.lumbar_levers import COMPRESSION_LIMIT, EXTENSOR, FLANK, FLEXOR
 from liftopt.multibody.person.segments import SEGMENTS, segment_mass
 from liftopt.multibody.person.subject import Subject
 from liftopt.multibody.sources import Source
@@ -26,23 +27,6 @@ SLOPE_SOURCE = Source(
     "secondary",
 )
 UP = np.array([0.0, 0.0, 1.0])
-
-
-@dataclass(frozen=True)
-class Lumbosacral:
-    """The disc in the pelvis, whose axes are forward, left and up where the person stands upright.
-
-    Attributes:
-        below: distance of its centre below the base of the spine, where the trunk turns [m].
-        normal: (3,) unit vector out of the sacrum's upper face.
-        forward: (3,) unit vector along that face, to the front.
-        between: what lies between it and the base of the spine; about the base of the spine, axes of the pelvis.
-    """
-
-    below: float
-    normal: Array
-    forward: Array
-    between: pin.Inertia
 
 
 def lumbosacral(subject: Subject) -> Lumbosacral:
@@ -63,3 +47,19 @@ def lumbosacral(subject: Subject) -> Lumbosacral:
         np.array([cos(slope), 0.0, -sin(slope)]),
         pin.Inertia(mass, -below / 2.0 * UP, np.diag([across, across, about_axis])),
     )
+
+
+def pressed_disc(subject: Subject, joint: str, upright: Array, most: float) -> Disc:
+    """Return the disc of a subject that must not be pressed with more than so much.
+
+    The muscle behind it or the one ahead of it bears the moment that extends, one of those beside it the lateral one.
+
+    Args:
+        subject: who it is.
+        joint: name of the joint at the base of the spine.
+        upright: (3, 3) forward, left and up in the world where the subject stands upright.
+        most: largest compression [N].
+    """
+    factors = [[1.0, flank / FLANK, behind] for behind in (1.0 / EXTENSOR, -1.0 / FLEXOR) for flank in (1.0, -1.0)]
+    muscles = tuple(f"spine ({behind}, {flank})" for behind in ("back", "belly") for flank in ("right", "left"))
+    return Disc(joint, upright, lumbosacral(subject), np.array(factors), muscles, most, COMPRESSION_LIMIT)

@@ -1,0 +1,67 @@
+"""One knot at rest with bodies apart: looked at, given planes and solved, with the object at any pose."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from liftopt.collocation.problem import Problem
+from liftopt.collocation.separating_planes import SeparatingPlanes
+from liftopt.collocation.solvers.banded import Banded, BandedOptions
+from liftopt.collocation.solvers.result import Solver
+from liftopt.search.feasibility_screen import stronger
+from liftopt.search.make_clear import CLEAR, Clearer, Pairs
+from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
+from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture, PostureSolver
+from liftopt.search.solid_distances import SolidDistances, solid_distances
+from liftopt.types import Array
+
+# A motion may begin to fall at its ends, so that it takes somewhat less strength than holding still there.
+RELIEF = 1.1
+
+
+class ClearStill:
+    """What static postures with bodies apart are found with.
+
+    Attributes:
+        clearer: of the team, with solvers for one knot.
+        postures: solver of static postures without planes, with somewhat more strength.
+    """
+
+    def __init__(self, clearer: Clearer, postures: PostureSolver) -> None:
+        """Get ready.
+
+        Args:
+            clearer: of the team.
+            postures: solver of its static postures.
+        """
+        self.postures = stronger(postures.problem, RELIEF)
+        self.clearer = replace(clearer, solver=self.solver)
+        self._solvers: dict[bool, Solver] = {}
+
+    def solver(self, problem: Problem) -> Solver:
+        """Return the solver for a problem of one knot, with planes or without."""
+        kept = self._solvers.get(problem.planes is not None)
+        if kept is None or not kept.takes(problem):
+            kept = Banded(problem, BandedOptions(TOLERANCE, MAX_ITERATIONS, SCALING, ROUGH))
+            self._solvers[problem.planes is not None] = kept
+        return kept
+
+    def look(self, problem: Problem, x: Array) -> SolidDistances:
+        """Return the distances at a posture, as unknowns ``x`` of a problem of one knot."""
+        return solid_distances(self.clearer.solids, problem, problem.unpack(x)[0], NEAR)
+
+    def planes(
+        self, found: SolidDistances, pairs: Pairs, margin: float, like: SeparatingPlanes | None = None
+    ) -> SeparatingPlanes:
+        """Return planes for pairs by number that ask for so much more than the scenario does, see ``choose_planes``."""
+        crossing = frozenset(np.flatnonzero(found.distance[0] < self.clearer.asked - CLEAR).tolist())
+        options = PlaneOptions(self.clearer.clearance + margin, margin, None, crossing)
+        return choose_planes(self.clearer.solids, found, pairs, options, like)
+
+
+def posture_of(problem: Problem, x: Array, cost: float) -> Posture:
+    """Return the posture that the unknowns of a problem of one knot are."""
+    control, force = problem.unpack(x)
+    return Posture(control[0], force[0], cost).rounded()
