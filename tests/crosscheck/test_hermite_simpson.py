@@ -31,6 +31,7 @@ from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.solution.interpolation import resample
 from liftopt.types import Array
 
+pytestmark = pytest.mark.long
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 STATES = 5
 WHOLE = {"objective.preset": "natural", "human.body": "whole"}
