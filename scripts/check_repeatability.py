@@ -99,14 +99,21 @@ def is_accepted(overrides: list[str]) -> bool:
     return True
 
 
-def choose_vectors(kind: str) -> bool:
-    """Let kernels and solver of this process use one kind of vectors; return whether the processor has them."""
+def choose_vectors(kind: str, unoptimised: bool) -> bool:
+    """Let kernels and solver of this process use one kind of vectors; return whether the processor has them.
+
+    Args:
+        kind: of ``SIMD``.
+        unoptimised: compile the kernels at -O0, which rounds alike.
+    """
     import _liftopt_banded
 
     from liftopt.collocation.codegen import simd_kernels as lanes
 
     extensions, operations, _ = SIMD[kind]
     lanes.EXTENSIONS = extensions
+    if unoptimised:
+        lanes.FLAGS = ("-O0", *(flag for flag in lanes.FLAGS if flag != "-O2"))
     return bool(_liftopt_banded.choose_instructions(operations)) and len(lanes._extensions()) == len(extensions)
 
 
@@ -143,7 +150,7 @@ def child(args: argparse.Namespace) -> int:
     """Solve all scenarios in this process, one line of JSON each."""
     from liftopt.search.cache import SolverCache
 
-    if args.simd and not choose_vectors(args.simd):
+    if args.simd and not choose_vectors(args.simd, args.unoptimised):
         return 0
     cache = SolverCache()
     for overrides in scenarios(args.count):
@@ -169,6 +176,7 @@ def run(mode: Mode, args: argparse.Namespace) -> list[dict[str, Any]]:
     """Return the answers of one run; none where this processor does not have its vectors."""
     command = [sys.executable, __file__, "--child", "--count", str(args.count), "--workers", str(mode.workers)]
     command += ["--simd", mode.simd] if mode.simd else []
+    command += ["--unoptimised"] if args.unoptimised else []
     command += [word for overrides in args.overrides for word in ("--set", overrides)]
     with busy(mode.busy), tempfile.TemporaryFile("w+") as lines:
         subprocess.run(command, stdout=lines, env=os.environ | mode.environment, check=True)
@@ -220,6 +228,11 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--only", nargs="*", default=[], metavar="WORD", help="runs whose names hold one of these")
     parser.add_argument("--set", action="append", default=[], dest="overrides", metavar="KEY=VALUE")
     parser.add_argument("--out", type=Path, help="all answers, as JSON")
+    parser.add_argument(
+        "--unoptimised",
+        action="store_true",
+        help="compile kernels of other vectors fast, to run slower and round alike",
+    )
     parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--workers", type=int, default=2, help=argparse.SUPPRESS)
     parser.add_argument("--simd", choices=SIMD, help=argparse.SUPPRESS)

@@ -54,6 +54,11 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let long files start first: one that starts last keeps one process busy and the others idle."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 class Solved(NamedTuple):
     """A real solution and the folder it was saved in; neither is to be changed."""
 
@@ -231,6 +236,14 @@ def small_lift(team: Team) -> Problem:
 @pytest.fixture(scope="session")
 def starts(small_lift: Problem) -> list[InitialGuess]:
     return posture_starts(small_lift, 2, 0, NEVER)
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave the figures of reports empty, which take most of the time of a page."""
+    from matplotlib.figure import Figure
+
+    monkeypatch.setattr("liftopt.viz.report_figures.drawn", lambda *_: Figure())
 
 
 @pytest.fixture

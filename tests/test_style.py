@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.long
 ROOT = Path(__file__).parents[1]
 LONGEST = 400
 SOURCES = ("liftopt", "scripts", "tests", "docs")

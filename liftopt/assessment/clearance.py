@@ -18,6 +18,7 @@ from liftopt.solution.solution import Solution
 from liftopt.types import Array
 
 MOST_OF_KIND = 3  # pairs of a kind that are told one by one
+NO_GAP = 5e-5  # [m]: would be told as 0.0 mm
 FINGERS = 0.025  # [m] below an edge, for the fingers that hold it there; chosen for this model
 SOURCE = "distances by coal between the collision shapes of the exported models, ten times a mesh interval"
 NO_SAFETY = (
@@ -45,8 +46,8 @@ def clearance_verdict(findings: Sequence[Finding]) -> Finding:
     if wrong:
         return Finding(f"{VERDICT}.{CLEARANCE}", WARNING, "warning", f"Warning for clearance: {'; '.join(wrong)}.")
     between = [item for item in findings if item.value is not None and item.code not in map(_code, WITHIN_BODIES)]
-    told = min(between, key=lambda item: item.value or 0.0).title if between else "nothing comes near"
-    return Finding(f"{VERDICT}.{CLEARANCE}", INFO, "bodies keep apart", f"Bodies keep apart: nearest are {told}.")
+    told = min(between, key=lambda item: item.value or 0.0).title if between else "none comes near another"
+    return Finding(f"{VERDICT}.{CLEARANCE}", INFO, "bodies keep apart", f"Bodies keep apart; the nearest: {told}.")
 
 
 def _code(kind: str) -> str:
@@ -75,7 +76,7 @@ def _distance(clearance: Clearance, item: PairClearance, limit: float | None, wr
     return Finding(
         _code(kind),
         WARNING if wrong else INFO,
-        near if wrong else f"{item.pair.told} {_mm(item.distance)} apart",
+        near if wrong else f"{item.pair.told} {_apart(item)}",
         f"{text}.",
         time=item.time,
         value=item.distance,
@@ -99,9 +100,19 @@ def _approach(clearance: Clearance, kind: str) -> str:
 
 def _near(item: PairClearance) -> str:
     """Return how near a pair comes, ``"table and shelf overlap by 12 mm"``."""
+    if _touches(item):
+        return f"{item.pair.told} touch"
     if item.distance < 0.0:
         return f"{item.pair.told} overlap by {_mm(-item.distance)}"
     return f"{item.pair.told} come as near as {_mm(item.distance)}"
+
+
+def _apart(item: PairClearance) -> str:
+    return "touching" if _touches(item) else f"{_mm(item.distance)} apart"
+
+
+def _touches(item: PairClearance) -> bool:
+    return abs(item.distance) < NO_GAP
 
 
 def _mm(length: float) -> str:

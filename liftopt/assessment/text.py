@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from liftopt.assessment.who import listed
 from liftopt.scenario.agents import Person
-from liftopt.scenario.grasps import grasp_heights, grasp_points
+from liftopt.scenario.grasps import grasp_heights, height_words
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.placement import lead, partner, stand_of
 from liftopt.scenario.robot_defaults import is_file
@@ -89,14 +89,8 @@ def _scenario(scenario: Scenario) -> list[str]:
     lift = "lift" if len(scenario.agents) > 1 else "lifts"
     return _wrapped(
         f"{listed(_described(scenario))} {lift} {box.mass:g} kg ({box.depth:g} x {box.width:g} x {box.height:g} m) "
-        f"from {start:g} to {end:g} m (height of {_held_at(scenario)}) in {scenario.duration:g} s{_apart(scenario)}"
+        f"from {start:g} to {end:g} m (height of {height_words(scenario)}) in {scenario.duration:g} s{_apart(scenario)}"
     )
-
-
-def _held_at(scenario: Scenario) -> str:
-    under = -scenario.object.height / 2.0
-    at_edges = all(z == under for _, _, z in grasp_points(scenario).values())
-    return "the edges they hold" if at_edges else "where they hold it, midway"
 
 
 def _described(scenario: Scenario) -> Iterator[str]:

@@ -1,7 +1,8 @@
 """What holds on the object and soles on the floor allow, as CasADi expressions that must not be negative.
 
 They are written apart from the NLP, and told of one instant. A hold that transmits moments has a cap on them and a
-largest angle between hand and object; a flat hand only pushes, and neither slides nor tips, and so do soles.
+largest angle between hand and object; a flat hand only pushes, and neither slides nor tips, and so do soles. A disc is
+pressed with no more than its limit.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from liftopt.multibody.agent import Grasp, Stance
+from liftopt.multibody.disc import Disc
 from liftopt.multibody.trajectory import GRAVITY
 
 MOMENT_UNIT = 1.0  # what the solver sees as one, near the size of what is found [Nm]
@@ -77,6 +79,16 @@ def footing(stance: Stance, ground: Any) -> list[Any]:
     return left + _within(
         [(about_x, sides * push), (about_z, 2 / 3 * stance.friction * aside * push)], FOOT_MOMENT_UNIT
     )
+
+
+def bearable(disc: Disc, passed: Any) -> list[Any]:
+    """Return what is left of the limit on a disc's compression, >= 0 whichever muscles pull, in sizes near one.
+
+    Args:
+        disc: what limits it.
+        passed: (3,) axial force, lateral moment and moment that extends [N, Nm, Nm].
+    """
+    return [(disc.most - ca.dot(ca.DM(factors), passed)) / disc.unit for factors in disc.factors]
 
 
 def _within(pairs: list[tuple[Any, Any]], unit: float) -> list[Any]:

@@ -17,8 +17,9 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from liftopt.collocation.task import LiftTask
-from liftopt.crosscheck.holds import footing, room
+from liftopt.crosscheck.holds import bearable, footing, room
 from liftopt.multibody.agent import Agent, LiftedObject
+from liftopt.multibody.disc import at_the_cut, cut_model
 from liftopt.multibody.standing import rooted
 from liftopt.types import Array
 
@@ -97,7 +98,7 @@ class Instant:
         closure: q -> (3 grasps,) each grasp point less the object's [m].
         grasp: y -> (grasps,) squared norms of the grasp forces [N^2].
         hold: y -> what the holds leave of their other limits, see ``room``, and then what the soles leave of theirs,
-            see ``footing``; empty for grips at points of agents that do not stand.
+            see ``footing``, and discs, see ``bearable``; empty for grips at points of agents that do not stand.
         workspace: q -> (grasps with a half-space,) distance of the grasp point from its border [m].
         tilt: q -> (agents with a trunk that leans,) 1 - cos of its angle to the vertical.
     """
@@ -126,9 +127,10 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
     tilts: list[Any] = []
     for agent, (first, last) in zip(agents, pairwise(np.cumsum([0, *at.joints]).tolist()), strict=True):
         s, held = slice(first, last), slice(len(hands), len(hands) + len(agent.grasps))
-        tau_needed, ground, points, axes = _agent(agent, q[s], v[s], a[s], forces[held], moments[held])
+        tau_needed, ground, passed, points, axes = _agent(agent, q[s], v[s], a[s], forces[held], moments[held])
         needed.append(tau_needed)
         under += footing(agent.stance, ground) if agent.stance else []
+        under += bearable(agent.disc, passed) if agent.disc else []
         tilts += _tilt(agent, q[s])
         hands += points
         grips += axes
@@ -160,15 +162,22 @@ def instant(agents: tuple[Agent, ...], lifted: LiftedObject, task: LiftTask) -> 
 
 def _agent(
     agent: Agent, q: Any, v: Any, a: Any, forces: list[Any], moments: list[Any]
-) -> tuple[Any, Any, list[Any], list[Any]]:
-    """Return the torques (n,) that an agent needs, what the ground does, its grasp points and their grip axes.
+) -> tuple[Any, Any, Any, list[Any], list[Any]]:
+    """Return the torques (n,) that an agent needs, what the ground does, what passes its disc, and its hands.
 
-    Grasp points (3,) and axes (3, 3) are in the world. What the ground does to all that moves (6,) is told about the
-    base's origin in its axes, of one who stands; of others it is empty.
+    These are grasp points (3,) and grip axes (3, 3) in the world. What the ground does to all that moves (6,) is told
+    about the base's origin in its axes, of one who stands; of others it is empty. Through a disc pass axial force,
+    lateral moment and the moment that extends; where there is none that is empty too.
     """
     import liftopt.pinocchio_casadi as cpin
 
+    own, cut = np.arange(len(agent.posture)), slice(0, 0)
     reduced = agent.reduced()
+    if agent.disc:
+        reduced = cut_model(reduced, agent.disc)
+        cut = at_the_cut(reduced, agent.disc.joint)
+        own = np.delete(np.arange(reduced.nv), cut)
+        q, v, a = (_at(own, each, reduced.nv) for each in (q, v, a))
     root = 1 if agent.stance else 0
     tree = rooted(reduced, agent.T_world_base) if agent.stance else reduced
     if agent.stance:
@@ -188,7 +197,15 @@ def _agent(
         grips.append(ca.mtimes(placement.rotation, frame.placement.rotation @ grasp.R_hand_object))
     external = cpin.StdVec_Force([cpin.Force(load[:3], load[3:]) for load in loads])
     tau = cpin.rnea(model, model.createData(), q, v, a, external)
-    return tau[6 * root :], tau[: 6 * root], points, grips
+    joints = tau[6 * root :]
+    return joints[own.tolist()], tau[: 6 * root], joints[cut], points, grips
+
+
+def _at(places: npt.NDArray[np.int64], values: Any, size: int) -> Any:
+    """Return so many zeros with values at these places."""
+    spread = ca.SX(size, 1)
+    spread[places.tolist()] = values
+    return spread
 
 
 def _tilt(agent: Agent, q: Any) -> list[Any]:

@@ -89,6 +89,13 @@ def grasp_heights(scenario: ScenarioFields) -> tuple[float, float]:
     return heights_of(scenario, middle_of_grasps(scenario))
 
 
+def height_words(scenario: ScenarioFields) -> str:
+    """Return what it is whose height ``grasp_heights`` gives, in words."""
+    under = -scenario.object.height / 2.0
+    at_edges = all(z == under for _, _, z in grasp_points(scenario).values())
+    return "the edges they hold" if at_edges else "where they hold it, midway"
+
+
 def heights_of(scenario: ScenarioFields, point: Point) -> tuple[float, float]:
     """Return how high a point of the object, in its axes from its centre, is at the start and at the end [m]."""
     start, end = (_height(scenario, place, point) for place in (scenario.task.start, scenario.task.end))

@@ -51,6 +51,8 @@ def parameters_of(scenario: Scenario) -> tuple[Parameter, ...]:
             found.append(
                 Parameter(_of(scenario, name, "robot base height"), (f"{name}.{agent.height_key}",), 0.01, "m")
             )
+    if scenario.limits.spine_compression is not None:
+        found.append(Parameter("limit on the spine", ("limits.spine_compression",), 100.0, "N"))
     return (*found, Parameter("duration", ("duration",), 0.1, "s"))
 
 

@@ -135,7 +135,7 @@ PLOTS: tuple[Plot | AgentPlot, ...] = (
     ),
     Plot(
         "object_motion",
-        "Height of the object's centre (a scenario's heights are those of the edges held), its tilt and speed.",
+        "Height of the object's centre, which is not that of the grasps, its tilt and speed.",
         object_motion,
     ),
     Plot(

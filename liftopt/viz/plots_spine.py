@@ -45,7 +45,10 @@ def spine_load(lift: Lift, agent: AgentTrajectory) -> Figure:
     )
     if asked := solution.scenario.limits.spine_compression:
         pressing.axhline(asked, color=INK, linewidth=1.0, linestyle=(0, (1, 2)), zorder=1)
-        pressing.text(1.0, asked, f"limit of this lift {asked:g} N", ha="left", va="bottom", fontsize=7, color=INK)
+        pressing.annotate(
+            f"limit of this lift {asked:g} N", (99.0, asked), (0, -2), textcoords="offset points", ha="right", va="top",
+            fontsize=7, color=INK,
+        )  # fmt: skip
     _limits(
         sliding, float(load.shear_size.max()), (SHEAR_FREQUENT, SHEAR_LIMIT), ("up to 1000 times a day", "up to 100")
     )

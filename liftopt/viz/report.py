@@ -17,8 +17,7 @@ from liftopt.ergonomics.reba import ASSUMPTIONS as REBA_ASSUMPTIONS
 from liftopt.ergonomics.rula import ASSUMPTIONS as RULA_ASSUMPTIONS
 from liftopt.errors import InputError
 from liftopt.multibody.agent import Kind
-from liftopt.scenario.grasps import grasp_heights
-from liftopt.scenario.task import GraspPlace
+from liftopt.scenario.grasps import grasp_heights, height_words
 from liftopt.solution.checks import TOUCH
 from liftopt.solution.finding import Finding, percent
 from liftopt.solution.solution import Solution
@@ -79,8 +78,7 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = (), *, m
     Robots' own ``meshes`` are looked for as ``figures_of`` has it.
     """
     lift = Lift.of(solution, figures_of(solution, meshes))
-    summary, task = summary_dict(solution), solution.scenario.task
-    by_grasps = isinstance(task.start, GraspPlace) and isinstance(task.end, GraspPlace)
+    summary = summary_dict(solution)
     figures = inline_figures(lift)
     for section in sections:
         figures |= section_figures(section)
@@ -104,7 +102,7 @@ def report_html(solution: Solution, sections: Sequence[ReportSection] = (), *, m
         "machine_data": data_words(solution.scenario, solution.robots),
         "holds": sum(len(agent.grasps) for agent in solution.agents),
         "heights": grasp_heights(solution.scenario),
-        "height_of": "the edges they hold" if by_grasps else "its underside",
+        "height_of": height_words(solution.scenario),
         "paired": stand_opposite(solution.scenario),
         "about": lambda finding: subject_words(finding, solution.agents),
         "named": [agent.name for agent in solution.agents if not who_is(agent, solution.agents).is_alone],

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from liftopt.assessment.assess import assessed
-from liftopt.assessment.clearance import FINGERS
+from liftopt.assessment.clearance import FINGERS, clearance_findings
 from liftopt.assessment.text import verdict_text
 from liftopt.solution.finding import Finding
 from liftopt.solution.interpolation import between_knots
@@ -90,6 +90,18 @@ def test_clear_bodies_are_told_in_one_verdict(clear: Solution) -> None:
     assert (verdict.severity, verdict.title) == ("info", "bodies keep apart")
     assert f"{1e3 * least:.0f} mm apart" in verdict.message
     assert "Clearance: bodies keep apart" in verdict_text(clear, None).splitlines()
+
+
+def test_what_touches_is_told_without_a_number(clear: Solution) -> None:
+    """An object that rests on an obstacle at the start is nowhere nearer."""
+    dense = clear.clearance
+    assert dense is not None
+    (item, *others) = dense.closest
+    for distance in (-1e-5, 1e-5):
+        judged = list(clearance_findings(clear, replace(dense, closest=(replace(item, distance=distance), *others))))
+        told = next(finding for finding in judged if finding.title.startswith(item.pair.told))
+        assert told.title == f"{item.pair.told} touching"
+        assert f"{item.pair.told} touch at {item.time:.2f} s".lower() in told.message.lower()
 
 
 def test_person_and_robot_have_distance_and_speed_and_no_claim_of_safety(light: Solution) -> None:

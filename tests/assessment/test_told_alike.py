@@ -20,6 +20,7 @@ from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 from liftopt.viz.report import report_html
 
+pytestmark = pytest.mark.long
 CONTRACT = {"code", "severity", "agent", "joint", "time", "value", "limit", "source", "message"}
 
 
@@ -32,7 +33,9 @@ def test_the_attribute_is_the_list(heavy: Any) -> None:
 
 
 @pytest.mark.parametrize("name", ["table5", "table5_paper"])
-def test_terminal_json_and_report_of_one_solve(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_terminal_json_and_report_of_one_solve(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
+) -> None:
     """Of the default lift, and of one that leads to a warning."""
     out = str(tmp_path / "r")
     arguments = ["solve", name, "--out", out, "--set", "solver.intervals=10", "--set", "solver.starts=1"]

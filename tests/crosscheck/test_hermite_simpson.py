@@ -17,6 +17,7 @@ from liftopt.crosscheck.holds import FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT, FORCE_UN
 from liftopt.crosscheck.instant import instant
 from liftopt.crosscheck.integrand import integrand
 from liftopt.crosscheck.transcriptions import MeshRow, MeshStudy, mesh_study, points_of, render
+from liftopt.ergonomics.spine import load_through
 from liftopt.multibody.standing import ground_in_base
 from liftopt.multibody.trajectory import (
     AgentTrajectory,
@@ -30,6 +31,7 @@ from liftopt.scenario.build import agents_of, object_of, task_of
 from liftopt.solution.interpolation import resample
 from liftopt.types import Array
 
+pytestmark = pytest.mark.long
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 STATES = 5
 WHOLE = {"objective.preset": "natural", "human.body": "whole"}
@@ -72,6 +74,7 @@ def still(solved: Callable[..., Any]) -> MeshStudy:
         (WHOLE, [0, 1, 2, 3, 4, 5]),
         (WHOLE | HANDLES, [0, 1, 2, 3, 4, 5]),
         (WHOLE | FLAT | {"human.hands": ["left"]}, [0, 1, 2, 3, 4, 5]),
+        (WHOLE | {"limits.spine_compression": 3000.0}, [0, 1, 2, 3, 4, 5]),
     ],
     ids=[
         "two points",
@@ -80,6 +83,7 @@ def still(solved: Callable[..., Any]) -> MeshStudy:
         "two hands",
         "two handles",
         "a flat left hand",
+        "a limited spine",
     ],
 )
 def test_equations_are_those_of_pinocchio_in_double_precision(keys, free):
@@ -108,6 +112,10 @@ def test_equations_are_those_of_pinocchio_in_double_precision(keys, free):
         if agent.stance is not None:
             ground, units = ground_in_base(agent, body), (FOOT_FORCE_UNIT, FOOT_MOMENT_UNIT)
             feet += [rows.room(ground) / unit for rows, unit in zip(sole_rows(agent.stance), units, strict=True)]
+        if agent.disc is not None:
+            load = load_through(agent, body, agent.disc.upright, agent.disc.place)
+            passed = np.stack([load.axial, load.lateral, load.extension], axis=1)
+            feet.append((3000.0 - passed @ agent.disc.factors.T) / agent.disc.unit)
     y = np.hstack([q, v, a, force, moment, tau]).T
     np.testing.assert_allclose(np.asarray(written.dynamics(y)), 0.0, atol=1e-10)
     np.testing.assert_allclose(np.asarray(written.balance(y)).T, table.wrench, atol=1e-10)

@@ -18,6 +18,7 @@ import xarray as xr
 import liftopt
 from liftopt.commands.cli import main
 
+pytestmark = pytest.mark.long
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 MADE = ("_build", "_drawings", "_tables", "gallery")

@@ -16,10 +16,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 
 import liftopt as lo
 from liftopt.commands.cli import main
 
+pytestmark = pytest.mark.long
 TEAMS = {
     "two_people": {"anna": "person", "ben": "person"},
     "person_two_sawyers": {"human": "person", "left": "robot", "right": "robot"},
@@ -144,7 +146,11 @@ def test_mujoco_agrees(lifted: Lifted, capsys: pytest.CaptureFixture[str]) -> No
         assert f"MuJoCo inverse dynamics, {name} " in told
 
 
-def test_plots_are_everybodys(lifted: Lifted, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plots_are_everybodys(
+    lifted: Lifted, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the names of their files; the report has drawn each of them."""
+    monkeypatch.setattr("liftopt.viz.plots.drawn", lambda *_: Figure())
     run(capsys, "plot", lifted.folder, "--out", tmp_path, "--format", "svg")
     plots = {file.stem for file in tmp_path.iterdir()}
     team = TEAMS[lifted.team]

@@ -17,6 +17,7 @@ import liftopt as lo
 from liftopt.commands.cli import main
 from liftopt.multibody.robots.example_robot_data import share_folder
 
+pytestmark = pytest.mark.long
 FILE = Path(__file__).parents[1] / "scenario" / "teams" / "person_two_ur5.toml"
 CHEAP = {"solver.intervals": 10, "solver.starts": 1, "solver.tries": 4}
 

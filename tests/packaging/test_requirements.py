@@ -19,6 +19,7 @@ from packaging.utils import canonicalize_name
 
 from liftopt.viz.meshcat_files import LICENCES, MESHCAT, VIEWER
 
+pytestmark = pytest.mark.long
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 OWN_WHEEL = tomllib.loads((ROOT / "liftopt/pinocchio_casadi/pyproject.toml").read_text(encoding="utf-8"))

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.long
 ROOT = Path(__file__).parents[2]
 SCRIPTS = ROOT / "scripts"
 # As if what the rivals need were not installed.

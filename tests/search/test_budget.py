@@ -19,7 +19,8 @@ from liftopt.search.solve import explain, find_lift, solve
 from liftopt.solution.finding import CAUTION
 from liftopt.solution.solution import Solution
 
-SMALL = ("solver.tries=6", "solver.starts=2", "solver.intervals=16", "solver.time_limit=3600")
+pytestmark = pytest.mark.long
+SMALL = ("solver.tries=6", "solver.starts=2", "solver.intervals=12", "solver.time_limit=3600")
 CASES = {
     "solved": SMALL,
     "out of reach": ("task.standing_distance=2.3", *SMALL),
@@ -63,7 +64,7 @@ def _cut(scenario: Any, stage: str, monkeypatch: pytest.MonkeyPatch, by: float =
     return solve(scenario, progress=jump)
 
 
-@pytest.mark.parametrize("stage", ["varying the best of", "solving on 16 intervals", "estimating the error"])
+@pytest.mark.parametrize("stage", ["varying the best of", "solving on 12 intervals", "estimating the error"])
 def test_where_time_cuts_the_search_short_the_solution_says_so_and_where(
     stage: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -71,7 +72,7 @@ def test_where_time_cuts_the_search_short_the_solution_says_so_and_where(
     solution = _cut(
         load_scenario("table5_paper", SMALL), stage, monkeypatch, 0.8 if stage.startswith("varying") else 0.95
     )
-    assert solution.solved == (stage != "solving on 16 intervals")
+    assert solution.solved == (stage != "solving on 12 intervals")
     words = f"the time limit of 3600 s cut the search short ({stage}"
     (note,) = (note for note in solution.notes if "time limit" in note)
     assert note.startswith(words)

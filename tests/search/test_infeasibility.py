@@ -31,12 +31,13 @@ from liftopt.search.suggested_changes import suggest_changes
 from liftopt.solution.solution import Solution
 from liftopt.solution.summary import summary_dict
 
+pytestmark = pytest.mark.long
 FAR = ("task.standing_distance=2.3",)
 MUCH_TOO_FAR = ("task.standing_distance=3",)
 HEAVY = ("object.mass=40",)
 WEAK = ("limits.max_grasp_force=8", "duration=8")
 FAST = ("duration=0.27", "object.mass=6", "solver.starts=3")
-BANDED = ("solver.name=banded", "solver.starts=2", "solver.time_limit=3600")
+BANDED = ("solver.name=banded", "solver.starts=2", "solver.intervals=10", "solver.time_limit=3600")
 
 
 @cache
@@ -206,6 +207,7 @@ def test_a_lift_counts_as_impossible_only_after_many_more_starts(monkeypatch: py
 
     monkeypatch.setattr("liftopt.search.solve.coarse_search", blind)
     monkeypatch.setattr("liftopt.search.solve.solve_starts", fails)
-    solution = solve(load_scenario("table5_paper", [*BANDED, "solver.tries=2"]), cache=_cache())
+    finer = "solver.intervals=20"  # than the coarse search's, so that there are two meshes
+    solution = solve(load_scenario("table5_paper", [*BANDED, finer, "solver.tries=2"]), cache=_cache())
     assert asked == [2, 2 * WIDER]
     assert solution.solved and solution.reasons == () == solution.suggested_changes

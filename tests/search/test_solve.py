@@ -17,6 +17,7 @@ from liftopt.search.optimum_on_mesh import WITHOUT_MULTIPLIERS
 from liftopt.search.solve import solve
 from liftopt.solution.solution import Solution
 
+pytestmark = pytest.mark.long
 CHEAP = ("solver.intervals=20", "solver.starts=1")
 PAPER = ("objective.preset=paper", "limits.clearance=off")
 

@@ -10,6 +10,7 @@ import pytest
 
 from liftopt.solution.solution import Solution
 
+pytestmark = pytest.mark.long
 GRAVITY = 9.81
 ENOUGH = "solver.time_limit=600.0"  # a busy machine is slower than the one the limit is for
 

@@ -19,6 +19,7 @@ from liftopt.solution.solution import Solution
 from liftopt.storage.reader import load_result
 from liftopt.storage.writer import save
 
+pytestmark = pytest.mark.long
 TOO_FAST = ("solve", "--set", "duration=0.2", "--set", "solver.intervals=10", "--set", "solver.tries=4")
 # Writes one result on and on, until it is told to end.
 WRITE_ON_AND_ON = """
@@ -67,6 +68,8 @@ def test_an_infeasible_solve_leaves_the_solved_result_and_says_where_its_iterate
     assert load_result(folder).solved
     assert not load_result(folder / "unsolved").solved
     assert load_result(folder / "unsolved").scenario.duration == 0.2
+    if arguments:  # the iterate is where it always is, and its pages are made once
+        return
     for command in (["report", "--html", "r.html"], ["view", "--html", "v.html"]):
         assert main([command[0], str(folder / "unsolved"), *command[1:]]) == 0
 

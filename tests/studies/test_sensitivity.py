@@ -26,6 +26,7 @@ from liftopt.search.solve import solve
 from liftopt.studies.parameters import Parameter, changed, parameters_of
 from liftopt.studies.sensitivity import SensitivityStudy, figures, study
 
+pytestmark = pytest.mark.long
 PAPER = ("objective.preset=paper", "limits.clearance=off")
 ENTRIES = (*PAPER, "solver.name=banded", "solver.starts=1", "solver.intervals=12")
 PARAMETERS = parameters_of(load_scenario())

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 
 from liftopt.assessment.assess import assessed
 from liftopt.commands.cli import main
@@ -19,6 +18,7 @@ from liftopt.solution.summary import summary_dict
 from liftopt.viz.report import report_html
 from liftopt.viz.report_tables import check_rows
 
+pytestmark = pytest.mark.long
 CHEAP = ("solver.intervals=10", "solver.starts=1")
 LARGEST = 15_000_000  # bytes
 
@@ -107,9 +107,7 @@ def test_page_tells_the_assessment_and_nothing_else(page: str, result: Any) -> N
         assert verdict.message in unescape(page)
 
 
-def test_clearance_has_a_table_by_pair_and_time_and_no_claim_of_safety(
-    page: str, result: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_clearance_has_a_table_by_pair_and_time_and_no_claim_of_safety(page: str, result: Any, undrawn: None) -> None:
     section = re.search(r'<section id="clearance">.*?</section>', page, re.DOTALL)
     assert section is not None
     rows = re.findall(
@@ -121,8 +119,6 @@ def test_clearance_has_a_table_by_pair_and_time_and_no_claim_of_safety(
         assert float(distance.replace("\N{MINUS SIGN}", "-")) == pytest.approx(1e3 * item.distance, abs=0.051)
         assert float(when) == pytest.approx(item.time, abs=0.0051)
     assert "nothing on this page says that the lift is safe" in section[0]
-    # Its figures are those of the page, and take most of the time.
-    monkeypatch.setattr("liftopt.viz.report_figures.drawn", lambda *_: Figure())
     off = report_html(assessed(replace(result.solution, scenario=_without_clearance(result.solution.scenario))))
     assert "Clearance is off: nothing keeps bodies apart." in off
 
@@ -138,7 +134,7 @@ def test_a_value_without_a_limit_is_never_ok(solved: Callable[..., Any]) -> None
     assert rows["grasp closure at the knots"]["state"] == rows["first-order optimality (KKT error)"]["state"] == "ok"
 
 
-def test_an_unsolved_result_is_no_prediction(result: Any) -> None:
+def test_an_unsolved_result_is_no_prediction(result: Any, undrawn: None) -> None:
     failed = assessed(replace(result.solution, outcome="time limit reached"))
     page = re.sub(r'srcdoc="[^"]*"', "", report_html(failed))
     header = page[page.index('id="result"') : page.index('id="warnings"')]

@@ -34,7 +34,10 @@ from liftopt.viz.scene_part import GROUND
 from liftopt.viz.viewer_page import playback_page
 from liftopt.viz.who import robot_of
 
-pytestmark = pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed (it is in 'test')")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(share_folder() is None, reason="example-robot-data is not installed (it is in 'test')"),
+]
 DATA = r'type="application/json">(.*?)</script>'
 MOST = 3e6  # characters that a robot may take of a page
 CUBE = '<visual><geometry><mesh filename="cube.obj" scale="0.1 0.1 0.3"/></geometry></visual>'

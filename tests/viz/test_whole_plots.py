@@ -18,6 +18,7 @@ from liftopt.viz.plots import drawn, plots_of
 from liftopt.viz.plots_data import Lift
 from liftopt.viz.report import report_html
 
+pytestmark = pytest.mark.long
 PARTS = {"legs": 3, "trunk": 3, "right arm": 7, "left arm": 7}
 
 
@@ -33,10 +34,14 @@ def figures(lift: Lift) -> dict[str, Figure]:
 
 @pytest.fixture(scope="module")
 def pages(team_solution: Callable[[str], Any], figures: dict[str, Figure]) -> dict[str, str]:
-    """Return reports by the team's name, without the playback and the drawings inside them."""
+    """Return reports by the team's name, without the playback and the drawings inside them.
+
+    All figures are drawn, and none is written: matplotlib takes as long for that.
+    """
     found = {}
     for name in ("squat", "two_whole"):
         with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("liftopt.viz.report_figures.rendered", lambda *_: b'<svg viewBox="0 0 1 1"></svg>')
             if name == "squat":  # its figures are at hand
                 patch.setattr("liftopt.viz.report_figures.drawn", lambda plot, _: figures[plot.name])
             page = re.sub(r'srcdoc="[^"]*"', "", report_html(team_solution(name).solution))

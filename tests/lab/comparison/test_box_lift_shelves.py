@@ -17,6 +17,7 @@ from liftopt.search.solve import solve
 from liftopt.solution.interpolation import resample
 from liftopt.solution.solution import Solution
 
+pytestmark = pytest.mark.long
 SCRIPT = Path(__file__).parents[3] / "scripts" / "check_box_lift.py"
 WHENEVER = {"solver.time_limit": 3600.0}  # however slow the machine is
 TIMES = 317  # at which it is looked; no multiple of the mesh's intervals

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from html import unescape
 from typing import Any
@@ -12,6 +13,8 @@ from matplotlib.figure import Figure
 
 from liftopt.viz.report import report_html
 from liftopt.viz.report_section import ReportSection, SectionFigure, SectionTable
+
+pytestmark = pytest.mark.long
 
 
 def _page(solution: Any, *sections: ReportSection) -> str:
@@ -25,10 +28,12 @@ def _section(page: str, name: str) -> str:
     return unescape(re.sub(r"<[^>]*>", " ", found))
 
 
-@pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave figures empty, which ``_page`` leaves out and which take most of the time."""
-    monkeypatch.setattr("liftopt.viz.report_figures.drawn", lambda *_: Figure())
+@pytest.fixture(scope="module", autouse=True)
+def undrawn() -> Iterator[None]:
+    """Leave figures empty, which ``_page`` leaves out and which take most of the time; others' tests draw them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("liftopt.viz.report_figures.drawn", lambda *_: Figure())
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +98,7 @@ def test_every_number_and_finding_says_whose_it_is(two_people: Any, two_robots: 
             assert ("the person " if agent.name == "human" else f"{agent.name} ") in verdict
 
 
-def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any, undrawn: None) -> None:
+def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any) -> None:
     figure = Figure(figsize=(2.0, 1.0))
     figure.subplots().plot([0, 1], [0, 1])
     section = ReportSection(
@@ -117,11 +122,9 @@ def test_a_section_that_is_added_is_whole_and_told_at_the_top(two_people: Any, u
     assert _section(page, "trial").rstrip().endswith("A note.")
 
 
-def test_heights_of_an_object_that_has_a_place_of_its_own_are_those_of_its_underside(
-    two_people: Any, undrawn: None
-) -> None:
-    """The centre at 1 and 1.3 m of a box 0.25 m high."""
+def test_heights_of_an_object_that_has_a_place_of_its_own_are_those_of_where_it_is_held(two_people: Any) -> None:
+    """The centre at 1 and 1.3 m of a box 0.25 m high, which is held at its lower edges."""
     places = {end: {"x": 0.65, "z": z} for end, z in (("start", 1.0), ("end", 1.3))}
     scenario = two_people.solution.scenario.replace({f"task.{end}": place for end, place in places.items()})
     page = _page(replace(two_people.solution, scenario=scenario))
-    assert "from 0.875 to 1.175 m (height of its underside) in" in page
+    assert "from 0.875 to 1.175 m (height of the edges they hold) in" in page
