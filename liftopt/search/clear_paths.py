@@ -23,6 +23,7 @@ from liftopt.search.make_clear import CLEAR, MARGIN, Clearer, Pairs
 from liftopt.search.moves import quintic
 from liftopt.search.postures import MAX_ITERATIONS, Posture
 from liftopt.search.session import Session
+from liftopt.search.turned_farther import with_turn
 from liftopt.types import Array
 
 FROM_EACH_END = 4  # postures that are led to the other end
@@ -33,7 +34,7 @@ WATCHED = 0.06  # pairs nearer than this to what is allowed get planes [m]: a st
 
 
 def paths_between(
-    session: Session, clearer: Clearer, problem: Problem, spline: RestToRestSpline
+    session: Session, clearer: Clearer, problem: Problem, spline: RestToRestSpline, farther: float = 0.0
 ) -> Iterator[InitialGuess]:
     """Yield motions of a problem along clear postures, from those at its ends in turns, the cheapest first.
 
@@ -42,10 +43,11 @@ def paths_between(
         clearer: of the team.
         problem: the lift, on any mesh.
         spline: its space of motions.
+        farther: by how much hands may turn farther on the object than the scenario allows [rad].
     """
     if not session.held or session.blocked_at_rest:
         return
-    still = ClearStill(clearer, session.postures)
+    still = ClearStill(clearer, with_turn(session.postures.problem, farther))
     phase = np.linspace(0.0, 1.0, FINER * spline.intervals + 1)
     ends = ("start", problem.task.start), ("end", problem.task.end)
     for n in range(FROM_EACH_END):

@@ -83,7 +83,7 @@ class _End:
     def __init__(self, session: Session, clearer: Clearer, pose: Array) -> None:
         self.session, self.pose = session, pose
         self.still = session.postures.problem.at_pose(pose)
-        self.at_rest = ClearStill(clearer, session.postures)
+        self.at_rest = ClearStill(clearer, session.postures.problem)
         self.problem = self.at_rest.postures.problem.at_pose(pose)
         self.clearer = self.at_rest.clearer
 

@@ -13,7 +13,7 @@ from liftopt.collocation.solvers.result import Solver
 from liftopt.search.feasibility_screen import stronger
 from liftopt.search.make_clear import CLEAR, Clearer, Pairs
 from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
-from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture, PostureSolver
+from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture
 from liftopt.search.solid_distances import SolidDistances, solid_distances
 from liftopt.types import Array
 
@@ -29,14 +29,14 @@ class ClearStill:
         postures: solver of static postures without planes, with somewhat more strength.
     """
 
-    def __init__(self, clearer: Clearer, postures: PostureSolver) -> None:
+    def __init__(self, clearer: Clearer, problem: Problem) -> None:
         """Get ready.
 
         Args:
             clearer: of the team.
-            postures: solver of its static postures.
+            problem: of one knot at rest, with the team's strength.
         """
-        self.postures = stronger(postures.problem, RELIEF)
+        self.postures = stronger(problem, RELIEF)
         self.clearer = replace(clearer, solver=self.solver)
         self._solvers: dict[bool, Solver] = {}
 

@@ -19,6 +19,7 @@ from liftopt.search.make_clear import Attempt, Clearer
 from liftopt.search.optima import PROMISING, each_once, is_known, objective_of
 from liftopt.search.passing_paths import passing_paths
 from liftopt.search.session import Session
+from liftopt.search.turned_farther import FARTHER, limits_turns, turned_back, with_turn
 
 # Optima that are tried for each that is wanted, where many cannot be made clear.
 FAILING = 4
@@ -151,7 +152,21 @@ def _along_clear_postures(session: Session, clearer: Clearer, failed: Sequence[A
             found += [attempt.candidate] if attempt.clear else []
             if len(found) == HELD_OFF:
                 break
+        if not found and limits_turns(origin.problem):
+            found = _turned_farther(session, session.clearer(origin.problem) or clearer, origin)
     return found
+
+
+def _turned_farther(session: Session, clearer: Clearer, origin: Candidate) -> list[Candidate]:
+    """Return the first clear optimum that paths lead to where hands may turn farther on the object at first."""
+    eased = with_turn(origin.problem, FARTHER)
+    for start in paths_between(session, clearer, eased, origin.spline, FARTHER):
+        result = replace(origin.result, x=start.x, converged=False)
+        attempt = clearer.make_clear(replace(origin, problem=eased, start=start.name, result=result), polish=False)
+        found = turned_back(clearer, origin.problem, attempt.candidate) if attempt.clear else None
+        if found is not None:
+            return [found]
+    return []
 
 
 def _out_of_the_lap(clearer: Clearer, failed: Sequence[Attempt]) -> list[Candidate]:
