@@ -27,6 +27,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.errors import ModelError
@@ -255,7 +256,7 @@ class Simulation:
         return [self._body + row for row in self._rows]
 
     @cached_property
-    def _held(self) -> Array:
+    def _held(self) -> npt.NDArray[np.bool_]:
         """Which places (nv,) in qvel have feedback."""
         return np.isin(np.arange(self._model.nv), [*self._joints, *self._turns])
 
