@@ -26,7 +26,7 @@ class InputError(LiftoptError):
 
 def _shown(value: object) -> str:
     try:
-        text = repr(value)
+        text = repr(list(value) if isinstance(value, tuple) else value)  # files and --set have lists
     except ValueError:  # Python refuses to write out integers of thousands of digits
         return "an integer of thousands of digits"
     except RecursionError:

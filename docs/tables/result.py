@@ -36,6 +36,7 @@ MEANINGS = {
     r"closure_between_knots": "largest distance of a hand from its point on the object, on a ten times finer grid [m]",
     r"balance_between_knots": "largest residual of the object's balance there [N, Nm]",
     r"torque_excess_between_knots": "most that a torque exceeds its limit there [Nm]",
+    r"compression_excess_between_knots": "most that the compression of a spine exceeds its limit there [N]",
     r"(solve|evaluation|setup|total)_seconds": "wall time of this part [s]",
 }
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from liftopt.lab.mocap.hand_force import HandForce
     from liftopt.lab.mocap.recorded_lift import RecordedLift
 
+SHARE = 0.5  # of the load on the right hand, unless the user says another
+
 
 def add_mocap_parser(commands: Any) -> None:
     """Add the command to the subparsers ``commands``."""
@@ -71,9 +73,7 @@ def add_mocap_parser(commands: Any) -> None:
         default=0.0,
         help="estimate the hands' forces from the object's motion",
     )
-    parser.add_argument(
-        "--hand-share", type=float, metavar="0-1", default=0.5, help="of the right hand in that (default: %(default)s)"
-    )
+    parser.add_argument("--hand-share", type=float, metavar="0-1", help=f"of the right hand in that (default: {SHARE})")
     parser.add_argument(
         "--hand-share-left",
         type=float,
@@ -114,7 +114,7 @@ def mocap(args: argparse.Namespace) -> str:
 
     mapping = load_marker_map(args.mapping)
     given = {name: getattr(args, name) for name in ("mass", "sex", "stature") if getattr(args, name) is not None}
-    left = args.hand_share_left
+    share, left = args.hand_share, args.hand_share_left
     person = Person.checked(mapping.subject.plain() | given, "subject.")
     changes: dict[str, Any] = {"subject": person} | ({"up": args.up} if args.up else {})
     if args.object_markers:
@@ -124,10 +124,11 @@ def mocap(args: argparse.Namespace) -> str:
     load = Load(
         measured=_measured(args, args.hand_force, mapping.up),
         mass=checked_number("--object-mass", args.object_mass, 0.0, 100.0, "kg"),
-        share=checked_number("--hand-share", args.hand_share, 0.0, 1.0, "of the load"),
+        share=checked_number("--hand-share", SHARE if share is None else share, 0.0, 1.0, "of the load"),
         left_measured=_measured(args, args.hand_force_left, mapping.up),
         left_share=None if left is None else checked_number("--hand-share-left", left, 0.0, 1.0, "of the load"),
     )
+    _check_together(args)
     if mapping.body == "arm" and (args.hand_force_left or left is not None):
         option = "--hand-force-left" if args.hand_force_left else "--hand-share-left"
         raise InputError(option, NO_VALUE, f"{args.mapping} maps trunk and right arm only")
@@ -142,6 +143,15 @@ def mocap(args: argparse.Namespace) -> str:
         if args.json
         else captured(lambda console: _print(lift, args.out, console))
     )
+
+
+def _check_together(args: argparse.Namespace) -> None:
+    """Raise ``InputError`` where an option says more of something that is not there."""
+    if args.hand_force_start is not None and not (args.hand_force or args.hand_force_left):
+        raise InputError("--hand-force-start", args.hand_force_start, "is when --hand-force FILE starts; give it too")
+    for option, share in (("--hand-share", args.hand_share), ("--hand-share-left", args.hand_share_left)):
+        if share is not None and not args.object_mass:
+            raise InputError(option, share, "is a hand's share of --object-mass KG; give it too")
 
 
 def _measured(args: argparse.Namespace, file: str | None, up: str) -> HandForce | None:

@@ -32,7 +32,7 @@ class Person(Section):
         Listed,
         entry(
             "which hands hold; by default the right one of an arm, both of a whole body",
-            'a list of "right" and "left"',
+            'a list of "right" and "left", each at most once',
         ),
     ]
     position: Annotated[

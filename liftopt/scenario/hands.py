@@ -14,7 +14,13 @@ BODY, HANDS, AGENTS = "body", "hands", "agents"
 
 
 def in_order(hands: tuple[Hand, ...]) -> tuple[Hand, ...]:
-    """Return hands with the right one first, each once."""
+    """Return hands with the right one first.
+
+    Raises:
+        ValueError: one is there twice.
+    """
+    if len(set(hands)) < len(hands):
+        raise ValueError("each hand once")
     return tuple(hand for hand in BOTH if hand in hands)
 
 

@@ -69,3 +69,6 @@ class Refine(Section):
     closure: Annotated[float, number("distance of the grasps between knots", "m", 1e-7, 1e-3)] = 1e-4
     balance: Annotated[float, number("residual of the object's balance between knots", "N, Nm", 1e-4, 100.0)] = 0.1
     torque_excess: Annotated[float, number("torque above its limit between knots", "Nm", 1e-4, 100.0)] = 0.1
+    compression_excess: Annotated[
+        float, number("compression of a spine above its limit between knots", "N", 1e-3, 1000.0)
+    ] = 10.0

@@ -85,6 +85,13 @@ def unmet(accuracy: Accuracy, wanted: Refine) -> str:
         ("grasp closure between knots", accuracy.closure, wanted.closure, 1e3, " mm"),
         ("balance between knots", accuracy.balance, wanted.balance, 1.0, " N, Nm"),
         ("torque above its limit between knots", accuracy.torque_excess, wanted.torque_excess, 1.0, " Nm"),
+        (
+            "compression above its limit between knots",
+            accuracy.compression_excess,
+            wanted.compression_excess,
+            1.0,
+            " N",
+        ),
     )
     # A NaN is not met.
     return "; ".join(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from liftopt.solution.checks import Verification
+from liftopt.solution.checks import BETWEEN_KNOTS, COMPRESSION, Verification
 
 OTHER_MOTION = "the motion on {intervals} intervals is another one"
 NOT_COMPARED = "there was no other mesh to compare with in the time that was left"
@@ -27,6 +27,7 @@ class Accuracy:
         intervals: of the mesh that was compared for it; 0: none.
         apart: how far the optima on both meshes are apart, root mean square over time, of the joint [rad] or coordinate
             of the object [m, rad] that differs most; NaN without a mesh.
+        compression_excess: most that the compression of a spine exceeds its limit on the finer grid [N]; 0 without one.
         remark: why there is no estimate of the objective, empty where there is one.
     """
 
@@ -39,6 +40,7 @@ class Accuracy:
     intervals: int = 0
     apart: float = np.nan
     remark: str = NOT_COMPARED
+    compression_excess: float = 0.0
 
     @staticmethod
     def between_knots(verification: Verification) -> Accuracy:
@@ -47,7 +49,8 @@ class Accuracy:
             float(verification.check(f"{name} between knots").value)
             for name in ("grasp closure", "balance", "torque limits")
         )
-        return Accuracy(closure, balance, torque)
+        spines = (check.value for check in verification.checks if check.name == COMPRESSION + BETWEEN_KNOTS)
+        return Accuracy(closure, balance, torque, compression_excess=float(max(spines, default=0.0)))
 
     @property
     def estimated(self) -> bool:

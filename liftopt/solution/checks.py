@@ -9,6 +9,7 @@ import numpy as np
 AT_KNOTS = 1e-6  # closure [m], balance [N, Nm], limits [their unit]
 TOUCH = 1e-3  # [m]: as much nearer than asked bodies may come between the knots
 FINER = 10  # intervals of the grid between knots, for each of the mesh
+COMPRESSION = "compression of the spine"  # name of a check
 BETWEEN_KNOTS = " between knots"  # ends the name of a check on that grid
 
 

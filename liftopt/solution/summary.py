@@ -223,6 +223,7 @@ def _accuracy(solution: Solution) -> dict[str, Any] | None:
         "closure_m": _number(accuracy.closure),
         "balance_SI": _number(accuracy.balance),
         "torque_excess_Nm": _number(accuracy.torque_excess),
+        "compression_excess_N": _number(accuracy.compression_excess),
         "objective_limit": _number(accuracy.objective_limit),
         "objective_error": _number(accuracy.objective_error),
         "objective_bar": _number(accuracy.objective_bar),

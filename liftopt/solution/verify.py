@@ -23,7 +23,7 @@ from liftopt.multibody.solid_pairs import solid_pairs
 from liftopt.multibody.solids import Solid
 from liftopt.multibody.standing import ground_in_base
 from liftopt.multibody.trajectory import AgentTrajectory, attitude, grasps_of, hand_turn, turned
-from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, FINER, TOUCH, Check, Verification
+from liftopt.solution.checks import AT_KNOTS, BETWEEN_KNOTS, COMPRESSION, FINER, TOUCH, Check, Verification
 from liftopt.solution.clearance_measure import pairs_nearby
 from liftopt.types import Array
 
@@ -133,7 +133,7 @@ def _limits(problem: Problem, motion: Motion, limit: float, suffix: str) -> list
         if model.disc is not None:
             load = load_through(model, trajectory, model.disc.upright, model.disc.place)
             excess = load.compression[:, None] - model.disc.most
-            checks.append(_worst("compression of the spine", excess, limit, "N", [model.name], motion.time))
+            checks.append(_worst(COMPRESSION, excess, limit, "N", [model.name], motion.time))
     # np.maximum lets a NaN through where max would hide it.
     return [Check(c.name + suffix, float(np.maximum(0.0, c.value)), c.limit, c.unit, c.where) for c in checks]
 

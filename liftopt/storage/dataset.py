@@ -157,6 +157,7 @@ def _attributes(solution: Solution) -> dict[str, Any]:
             "closure_between_knots": accuracy.closure,
             "balance_between_knots": accuracy.balance,
             "torque_excess_between_knots": accuracy.torque_excess,
+            "compression_excess_between_knots": accuracy.compression_excess,
             "objective_limit": accuracy.objective_limit,
             "objective_error": accuracy.objective_error,
             "objective_bar": accuracy.objective_bar,

@@ -151,7 +151,8 @@ def test_point_grasps_that_are_on_no_line_hold_the_roll() -> None:
     [
         ({"human.hands": ["left"]}, "human.hands", 'set body = "whole"'),
         ({"human.hands": ["right", "left"]}, "human.hands", 'must be \\["right"\\]'),
-        ({"human.hands": []}, "human.hands", 'must be a list of "right" and "left"'),
+        ({"human.hands": []}, "human.hands", '= \\[\\]: must be a list of "right" and "left"'),
+        ({"human.hands": ["left", "left"]}, "human.hands", '"left", each at most once'),
         ({"human.body": "whole", "object.width": 0.15}, "object.grasps.human_right", "too broad for an edge of 150 mm"),
         (
             {"human.body": "whole", "object.grasps": {"human": "side"}},

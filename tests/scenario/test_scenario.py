@@ -85,7 +85,14 @@ def test_default_is_table_5_as_the_contract_lists_it() -> None:
             "workers": 2,
             "time_limit": 50.0,
         },
-        "refine": {"on": False, "objective_error": 0.02, "closure": 1e-4, "balance": 0.1, "torque_excess": 0.1},
+        "refine": {
+            "on": False,
+            "objective_error": 0.02,
+            "closure": 1e-4,
+            "balance": 0.1,
+            "torque_excess": 0.1,
+            "compression_excess": 10.0,
+        },
     }
 
 

@@ -176,7 +176,7 @@ def _candidate(intervals: int, objective: float, bent: float = 0.0, rest: str = 
         spline=spline,
         problem=SimpleNamespace(unpack=lambda x: (control, None)),
         result=SimpleNamespace(x=None, objective=objective, converged=True),
-        verification=SimpleNamespace(check=lambda name: SimpleNamespace(value=checks[name])),
+        verification=SimpleNamespace(check=lambda name: SimpleNamespace(value=checks[name]), checks=()),
     )
 
 

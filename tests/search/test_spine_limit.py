@@ -21,11 +21,13 @@ from liftopt.ergonomics.spine import load_through, spine_load
 from liftopt.errors import InputError
 from liftopt.scenario.build import motions_of
 from liftopt.scenario.model import Scenario, load_scenario
+from liftopt.scenario.settings import Refine
 from liftopt.search.adjustables import adjustables
 from liftopt.search.cache import BANDED, SolverCache
 from liftopt.search.feasibility_screen import screen_ends
 from liftopt.search.infeasibility import find_least_violation
 from liftopt.search.initial_guess import posture_starts
+from liftopt.search.mesh_accuracy import unmet
 from liftopt.search.solve import solve
 from liftopt.solution.checks import Check
 from liftopt.solution.finding import CAUTION
@@ -93,6 +95,18 @@ def test_the_limit_holds_at_every_knot_and_is_verified(limited: Solution) -> Non
     (told,) = [finding for finding in limited.assessment if finding.code == "person.spine_limit"]
     assert (told.severity, told.limit) == (CAUTION, 3200.0)
     assert told.value is not None and told.value >= pressed.max()  # between the knots too
+
+
+def test_refining_goes_on_while_it_is_exceeded_between_the_knots(limited: Solution) -> None:
+    """The load between the knots, as the finding tells it, beyond the limit."""
+    assert limited.accuracy is not None
+    (told,) = [finding for finding in limited.assessment if finding.code == "person.spine_limit"]
+    assert told.value is not None
+    assert limited.accuracy.compression_excess == pytest.approx(told.value - 3200.0, rel=1e-6)
+    assert limited.accuracy.compression_excess > 1.0
+    short = unmet(limited.accuracy, Refine(compression_excess=1.0))
+    assert f"compression above its limit between knots {limited.accuracy.compression_excess:.2g} N (1 N asked)" in short
+    assert "compression" not in unmet(limited.accuracy, Refine(compression_excess=1000.0))
 
 
 def test_the_plot_shows_it(limited: Solution) -> None:

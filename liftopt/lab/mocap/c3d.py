@@ -131,25 +131,23 @@ def _analog(
     scale, offset = parameters.numbers("ANALOG", "SCALE"), parameters.numbers("ANALOG", "OFFSET")
     if scale is None:
         return None, ["ANALOG:SCALE is missing: what its channels mean is not known, they are left aside"]
+    if len(scale) < count:
+        notes.append(f"ANALOG:SCALE is missing for channels {len(scale) + 1} to {count}: they are left aside")
+        count = len(scale)
+        raw = raw[:, :count]
     if offset is None:
         notes.append("ANALOG:OFFSET is missing: taken as 0")
-    offsets = _each(offset, count, 0.0)
+    offsets = np.zeros(count)
+    if offset is not None:
+        offsets[: len(offset)] = offset[:count]
     if unsigned:
         offsets = np.where(offsets < 0.0, offsets + 65536.0, offsets)
     whole = parameters.numbers("ANALOG", "GEN_SCALE")
-    values = (raw - offsets) * _each(scale, count, 1.0) * (1.0 if whole is None else whole[0])
+    values = (raw - offsets) * scale[:count] * (1.0 if whole is None else whole[0])
     labels = parameters.texts("ANALOG", "LABELS")
     labels = (labels + [f"channel {i + 1}" for i in range(len(labels), count)])[:count]
     units = (parameters.texts("ANALOG", "UNITS") + [""] * count)[:count]
     return AnalogChannels(layout.samples * rate, tuple(labels), tuple(units), values), notes
-
-
-def _each(values: Array | None, count: int, default: float) -> Array:
-    """Return one value for each channel; the last channels may have none."""
-    whole = np.full(count, default)
-    if values is not None:
-        whole[: len(values)] = values[:count]
-    return whole
 
 
 def _events(parameters: C3dParameters) -> tuple[tuple[str, float], ...]:

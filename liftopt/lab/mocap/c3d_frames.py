@@ -54,12 +54,13 @@ def frame_layout(
         frames: as stated.
         available: bytes from the first frame to the end.
     """
-    samples = max(header.analog_samples, 1)
-    first = FrameLayout(header.points, header.analogs // samples, samples, header.scale)
+    samples = header.analog_samples
     rate, analog_rate = parameters.numbers("POINT", "RATE"), parameters.numbers("ANALOG", "RATE")
     used, channels = parameters.count("POINT", "USED"), parameters.count("ANALOG", "USED")
     if rate is not None and analog_rate is not None and rate[0] > 0.0 and 0.5 <= analog_rate[0] / rate[0] < 1e5:
         samples = round(float(analog_rate[0] / rate[0]))
+    samples, in_header = max(samples, 1), header.analog_samples or max(samples, 1)
+    first = FrameLayout(header.points, header.analogs // in_header, in_header, header.scale)
     scale = parameters.numbers("POINT", "SCALE")
     second = FrameLayout(
         first.points if used is None else used,

@@ -29,10 +29,11 @@ SPREAD_FACTOR = 9.0  # medians of the deviation that are still the segment's own
 EDGE, LONGEST_EDGE = 0.15, 0.25  # share of the tolerance down to which an outlier's run reaches, and how long [s]
 HOLE = 6  # frames between two outliers of one marker that are taken as outliers too
 STILL, MOVED = 3, 0.005  # frames with the very same coordinates while the others moved so far [m] are frozen
+TREMBLE = 0.001  # m within which a marker is still that then jumps: some systems write a frozen one with noise
 PIECE = 0.1  # share of the frames between two jumps whose shape is wrong: then all of them are
 TOO_MANY = 0.4  # share of a marker's frames: with more, nobody knows which of its two places is the right one
 FEWEST_LEFT = 2  # markers that with its neighbour show a segment
-OPTIONAL = ("object", "scapula")  # segments that may be unknown for a while
+OPTIONAL = ("object", "scapula", "right foot", "left foot")  # segments that may be unknown for a while; feet stand
 TOGETHER = 0.6  # share of all markers that jump in one frame: the recording does
 
 
@@ -212,7 +213,7 @@ def _check_whole(recording: Recording, channels: list[int]) -> None:
 def _frozen(points: Array, rate: float) -> Flags:
     """Return (F, M) where a marker has the very same coordinates for some frames in which the others move.
 
-    Where they all are frozen, that they jump afterwards shows it.
+    Where they all are frozen, that they jump afterwards shows it. One that jumps afterwards may have trembled.
     """
     frozen, jumps = np.zeros(points.shape[:2], bool), jumps_of(points, rate)
     for marker in range(points.shape[1]):
@@ -223,11 +224,22 @@ def _frozen(points: Array, rate: float) -> Flags:
             if last + 1 < len(points) and jumps[last + 1, marker]:
                 frozen[first : last + 1, marker] = True
                 continue
-            others = np.delete(points[first - 1 : last + 1], marker, axis=1)
-            with_all = others[:, were_seen(others).all(axis=0)]
-            if with_all.shape[1] and np.median(np.ptp(with_all, axis=0).max(axis=1)) > MOVED:
-                frozen[first : last + 1, marker] = True  # the first of them is where it was
+            # The first of them is where it was.
+            frozen[first : last + 1, marker] |= _others_moved(points[first - 1 : last + 1], marker)
+        for jump in np.flatnonzero(jumps[1:, marker] & ~frozen[:-1, marker]) + 1:
+            path = points[:jump, marker][::-1]
+            spread = np.maximum.accumulate(path, axis=0) - np.minimum.accumulate(path, axis=0)
+            count = int(np.argmin(np.append((spread <= TREMBLE).all(axis=1), False)))
+            still = slice(jump - count, jump)
+            frozen[still, marker] |= count >= STILL and _others_moved(points[still], marker)
     return frozen
+
+
+def _others_moved(points: Array, marker: int) -> bool:
+    """Return whether most of the other markers (F, M, 3) that are seen in all frames went further than ``MOVED``."""
+    others = np.delete(points, marker, axis=1)
+    whole = others[:, were_seen(others).all(axis=0)]
+    return bool(whole.shape[1]) and bool(np.median(np.ptp(whole, axis=0).max(axis=1)) > MOVED)
 
 
 def _whole_pieces(points: Array, wrong: Flags, rate: float) -> Flags:

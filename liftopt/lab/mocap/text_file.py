@@ -253,7 +253,7 @@ def number_table(lines: list[Line], names: tuple[str, ...], group: int = 0) -> t
         lines: after the header.
         names: of the columns, for messages and for their number.
         group: lines may go on behind the named columns by this many fields, or a multiple; 0 for none. What stands
-            there is left out and noted.
+            there is left out and noted. They may end as many fields early: what is not there is missing.
 
     Raises:
         InputError: a line has more or fewer fields than there are columns, or a field is no number.
@@ -263,16 +263,20 @@ def number_table(lines: list[Line], names: tuple[str, ...], group: int = 0) -> t
     if used and _width(used[-1], len(names)) < len(names):
         notes.append(f"line {used[-1].number} ends after {len(used[-1].filled)} of {len(names)} fields: left out")
         used = used[:-1]
-    extra, first = 0, 0
+    extra, first, short = 0, 0, []
     for line in used:
         width = _width(line, len(names))
         beyond = width - len(names)
-        if beyond < 0 or (beyond and (not group or beyond % group)):
+        if (beyond and (not group or beyond % group)) or width <= group:
             raise line.error(f"{width} fields", f"the header names {len(names)} columns")
+        if beyond < 0:
+            short.append(line.number)
         if beyond > extra:
             extra, first = beyond, first or line.number
     if extra:
         notes.append(f"{extra} columns behind the {len(names)} that have a name are left out, from line {first} on")
+    if short:
+        notes.append(f"lines end before the last column, the first is line {short[0]}: markers there were not seen")
     check_decimals(used, range(len(names)))
     rows = [[line.number_at(column, name) for column, name in enumerate(names)] for line in used]
     return np.array(rows, dtype=float).reshape(-1, len(names)), used, notes

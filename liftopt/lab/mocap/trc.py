@@ -108,6 +108,8 @@ def _rate(header: dict[str, str], time: Array, lines: list[Line], notes: list[st
         return stated
     steps = np.sort(np.diff(time))
     typical, mean = 1.0 / steps[(len(steps) - 1) // 2], (len(time) - 1) / (time[-1] - time[0])
+    if abs(typical - stated / 1000.0) < 0.01 * typical:
+        raise lines[0].error(float(time[0]), f"the column Time must hold seconds; at {stated:g} Hz these are ms")
     # Stamps have few digits: a whole number of frames a second is tried before what they say to the last one.
     for rate in (stated, round(mean), mean, round(typical)):
         if np.isfinite(rate) and rate > 0.0 and _fits(time, rate):

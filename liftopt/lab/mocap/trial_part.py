@@ -15,6 +15,7 @@ from liftopt.lab.mocap.recording import Recording
 from liftopt.lab.mocap.whole_map import WholeMap
 
 Mapping = TypeVar("Mapping", MarkerMap, WholeMap)
+A_SPAN = "must be MARKER or MARKER:FROM-TO in seconds, FROM before TO"
 SPAN = re.compile(r"(?P<marker>.+):(?P<start>[0-9.]+)-(?P<end>[0-9.]+)")
 
 
@@ -63,7 +64,7 @@ def ignored_markers(texts: Sequence[str]) -> tuple[Ignored, ...]:
         except ValueError:
             start, end = 1.0, 0.0
         if start > end:
-            raise InputError("--ignore", text, "must be MARKER or MARKER:FROM-TO in seconds, FROM before TO")
+            raise InputError("--ignore", text, A_SPAN)
         result.append(Ignored(match["marker"], start, end))
     return tuple(result)
 
@@ -100,7 +101,8 @@ def _without(recording: Recording, ignored: tuple[Ignored, ...]) -> Recording:
         try:
             channel = recording.index(one.marker)
         except InputError as error:
-            raise InputError("--ignore", one.marker, error.allowed) from None
+            known = one.marker.rpartition(":")[0] in recording.labels
+            raise InputError("--ignore", one.marker, A_SPAN if known else error.allowed) from None
         inside = (recording.time >= one.start - 1e-9) & (recording.time <= one.end + 1e-9)
         if not inside.any():
             raise InputError("--ignore", f"{one.marker}:{one.start:g}-{one.end:g}", _extent(recording))

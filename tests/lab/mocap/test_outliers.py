@@ -129,6 +129,19 @@ def test_what_was_right_before_a_marker_froze_is_kept(truth: Any) -> None:
     assert "frames 56 to 69" in note
 
 
+def test_a_frozen_marker_that_trembles_is_dropped_from_where_it_froze(truth: Any, clean: RecordedLift) -> None:
+    channel, rng = truth.recording.index("RASI"), np.random.default_rng(2)
+
+    def freeze(points: Array) -> None:
+        points[60:95, channel] = points[60, channel] + rng.normal(0.0, 0.05, (35, 3))
+
+    lift = _with(truth, freeze)
+    _peaks_agree(lift, clean)
+    (dropped,) = [gap for gap in lift.gaps if gap.marker == "RASI"]
+    assert 55 <= dropped.first <= 60
+    assert dropped.last == 94
+
+
 @pytest.mark.parametrize(("group", "name"), [(("MC2", "MC5", "HAND1"), "hand"), (("B1", "B2", "B3", "B4"), "object")])
 def test_a_segment_that_is_frozen_while_it_moves_is_refused(truth: Any, group: tuple[str, ...], name: str) -> None:
     channels = [truth.recording.index(label) for label in group]

@@ -86,6 +86,19 @@ def test_missing_frames_become_frames_without_markers(write: Any) -> None:
     assert any("3 frames are missing" in note for note in found.notes)
 
 
+def test_a_row_without_the_tabs_of_markers_that_were_not_seen(write: Any) -> None:
+    """Editors cut tabs at the end of a line."""
+    whole, trimmed = read_trc(write(TRC)), read_trc(write(TRC.replace("\t\t\t\n3\t", "\n3\t")))
+    np.testing.assert_array_equal(trimmed.points, whole.points)
+    assert trimmed.notes == ("lines end before the last column, the first is line 8: markers there were not seen",)
+
+
+def test_a_trc_file_in_milliseconds_is_refused(write: Any) -> None:
+    text = TRC.replace("\t0.00\t", "\t0\t").replace("\t0.01\t", "\t10\t").replace("\t0.02\t", "\t20\t")
+    with pytest.raises(InputError, match="Time must hold seconds; at 100 Hz these are ms"):
+        read_trc(write(text))
+
+
 @pytest.mark.parametrize(
     ("old", "new", "match"),
     [

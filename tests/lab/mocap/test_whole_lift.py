@@ -265,8 +265,9 @@ def test_swapped_and_lost_markers_are_named_and_change_little(lift: tuple[WholeT
     points[100:120, [right, left]] = points[100:120, [left, right]]
     points[200:204, recording.index("LKNE")] += np.array([0.0, 0.0, 300.0])
     points[140:180, recording.index("RUPA")] = np.nan
+    points[100:140, recording.index("RHEE")] += 200.0  # two markers are on a foot, which stands
     found = recorded_lift(replace(recording, points=points), MAP, Load(mass=MASS), CUTOFF)
-    for label in ("RASI", "LASI", "LKNE"):
+    for label in ("RASI", "LASI", "LKNE", "RHEE"):
         assert any(note.startswith(f"{label} leaves the shape") for note in found.notes), label
     np.testing.assert_allclose(np.degrees(found.q), np.degrees(clean.q), atol=1.5)
 

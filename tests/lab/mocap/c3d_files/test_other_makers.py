@@ -70,6 +70,7 @@ def test_numbers_of_every_processor(
         (_header(2, 0), ""),
         (_header(4, 0), ""),
         (_header(8, 0), ""),
+        (_header(9, 0), ""),
         (_header(4, 12), "the header says 12 frames, the file holds 30"),
     ],
 )
@@ -106,6 +107,18 @@ def test_analog_channels_without_a_scale_are_left_aside(c3d_file: Any, plain_poi
     np.testing.assert_allclose(found.points, plain_points(), rtol=1e-6)
     assert found.analog is None
     assert any("ANALOG:SCALE is missing" in note for note in found.notes)
+
+
+def test_analog_channels_behind_the_last_scale_are_left_aside(c3d_file: Any, tmp_path: Path) -> None:
+    path = c3d_file.write(tmp_path / "a.c3d")
+    content = path.read_bytes()
+    at = content.index(b"\x05\x02SCALE")
+    assert content[at + 9 : at + 12] == b"\x04\x01\x06"  # floats, one dimension of six
+    path.write_bytes(content[: at + 11] + b"\x04" + content[at + 12 :])
+    found = read_c3d(path)
+    assert found.analog is not None
+    np.testing.assert_allclose(found.analog.values, c3d_file.analog[:, :4])
+    assert "ANALOG:SCALE is missing for channels 5 to 6: they are left aside" in found.notes
 
 
 def test_no_analog_group_where_the_header_counts_channels(c3d_file: Any, plain_points: Any, tmp_path: Path) -> None:
