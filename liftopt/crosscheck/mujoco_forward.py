@@ -23,9 +23,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liftopt.crosscheck.mujoco_balls import BallMotion, ball_motions, make_balls
 from liftopt.errors import ModelError
@@ -132,6 +134,10 @@ class Simulation:
         return Followed(Deviation(*worst.tolist()), self._hinges, added, added / limits, moment)
 
     @cached_property
+    def _mujoco(self) -> ModuleType:
+        return import_mujoco()
+
+    @cached_property
     def _dense(self) -> Solution:
         interval = float(self.solution.time[1] - self.solution.time[0])
         return resample(self.solution, int(np.ceil(interval / TIME_STEP - 1e-9)))
@@ -142,7 +148,7 @@ class Simulation:
 
     @cached_property
     def _model(self) -> Any:
-        mujoco = import_mujoco()
+        mujoco = self._mujoco
         spec = spec_of(
             self.solution.urdfs.values(), [name for agent in self.solution.agents for name in _pinned(agent)]
         )
@@ -161,12 +167,12 @@ class Simulation:
 
     @cached_property
     def _data(self) -> Any:
-        return import_mujoco().MjData(self._model)
+        return self._mujoco.MjData(self._model)
 
     @cached_property
     def _still(self) -> Any:
         """What closes the grasps, beside the simulation."""
-        return import_mujoco().MjData(self._model)
+        return self._mujoco.MjData(self._model)
 
     @cached_property
     def _balls(self) -> list[BallMotion]:
@@ -249,9 +255,14 @@ class Simulation:
         """Where in qvel the object can turn about its grasp points."""
         return [self._body + row for row in self._rows]
 
+    @cached_property
+    def _held(self) -> npt.NDArray[np.bool_]:
+        """Which places (nv,) in qvel have feedback."""
+        return np.isin(np.arange(self._model.nv), [*self._joints, *self._turns])
+
     def _closed(self, k: int) -> tuple[Array, Array]:
         """Return position and velocity at time ``k`` with the grasp points together, as near as inertia has it."""
-        mujoco, model, data = import_mujoco(), self._model, self._still
+        mujoco, model, data = self._mujoco, self._model, self._still
         data.qpos[:], rate = self._states.qpos[k], self._states.qvel[k].copy()
         for closing in (True, True, False):
             mujoco.mj_fwdPosition(model, data)
@@ -268,7 +279,7 @@ class Simulation:
 
     def _start(self, k: int, serve: bool) -> float:
         """Put the simulation on the solution, its grasps closed; return by how much its forces differ there [N]."""
-        mujoco, data = import_mujoco(), self._data
+        mujoco, data = self._mujoco, self._data
         mujoco.mj_resetData(self._model, data)
         data.qpos[:], data.qvel[:] = self._closed(k)
         data.qfrc_applied[:], data.xfrc_applied[:, 3:] = self._states.tau[k], self._moments[k]
@@ -286,19 +297,18 @@ class Simulation:
         return force
 
     def _feedback(self, k: int) -> Array:
-        mujoco, model, data = import_mujoco(), self._model, self._data
+        model, data, held = self._model, self._data, self._held
         position, rate = self._closed(k)
         acceleration = BANDWIDTH**2 * self._away(position) + 2 * BANDWIDTH * (rate - data.qvel)
-        held = np.isin(np.arange(model.nv), [*self._joints, *self._turns])
         force = np.zeros(model.nv)
-        mujoco.mj_mulM(model, data, force, acceleration * held)
+        self._mujoco.mj_mulM(model, data, force, acceleration * held)
         return force * held
 
     def _advance(self, k: int, force: Array) -> Array:
         """Go from time ``k`` to the next; return the deviations there, those of ``Deviation``."""
         self._data.qfrc_applied[:] = force
         self._data.xfrc_applied[:, 3:] = self._moments[k : k + 2].mean(axis=0)
-        import_mujoco().mj_step(self._model, self._data)
+        self._mujoco.mj_step(self._model, self._data)
         error, at = self._away(self._states.qpos[k + 1]), self._body
         joints, position, turn = error[self._joints], error[at : at + 3], error[at + 3 : at + 6]
         worst = np.array([np.abs(joints).max(), np.linalg.norm(position), np.linalg.norm(turn)])
@@ -308,7 +318,7 @@ class Simulation:
     def _away(self, position: Array) -> Array:
         """Return how far (nv,) the simulation is from a position."""
         error = np.zeros(self._model.nv)
-        import_mujoco().mj_differentiatePos(self._model, error, 1.0, self._data.qpos, position)
+        self._mujoco.mj_differentiatePos(self._model, error, 1.0, self._data.qpos, position)
         return error
 
 

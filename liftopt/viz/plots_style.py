@@ -120,9 +120,8 @@ def legend_above(axes: Axes, columns: int, room: float = 0.22) -> None:
 
 def time_axes(grid: list[list[Axes]], duration: float) -> None:
     """Give panels percent of the lift below and seconds above, at the outer ones only."""
-    for axes in (axes for line in grid for axes in line):
-        axes.set_xlim(0.0, 100.0)
-        axes.set_xticks([0, 25, 50, 75, 100])
+    grid[0][0].set_xlim(0.0, 100.0)  # which all share
+    grid[0][0].set_xticks([0, 25, 50, 75, 100])
     for axes in grid[0]:
         above = axes.secondary_xaxis("top", functions=(_scaled(duration / 100), _scaled(100 / duration)))
         above.set_xticks([duration * part / 4 for part in range(5)])

@@ -99,15 +99,15 @@ class _Light:
 
     @staticmethod
     def of(bodies: Sequence[Body], toward: Array) -> _Light:
-        soup = _Soup.of(bodies)
-        points = soup.corners.reshape(-1, 3) if len(soup.corners) else np.zeros((1, 3))
+        corners = np.concatenate([np.zeros((0, 3, 3)), *(body.mesh.vertices[body.mesh.triangles] for body in bodies)])
+        points = corners.reshape(-1, 3) if len(corners) else np.zeros((1, 3))
         low, high = points.min(axis=0) - 0.1, points.max(axis=0) + 0.1
         size = (SHADOW_PIXELS, SHADOW_PIXELS)
         sun = straight(toward, low, high, size)
-        reach = rasterize(sun.project(soup.corners), size).depth
+        reach = rasterize(sun.project(corners), size).depth
         cells = tuple(np.maximum(np.ceil((high - low)[:2] / CELL), 1).astype(int).tolist())
         # Upwards from the floor: x and y as they are, the depth is the height.
-        seen = (soup.corners - [low[0], low[1], 0.0]) / [CELL, CELL, 1.0]
+        seen = (corners - [low[0], low[1], 0.0]) / [CELL, CELL, 1.0]
         height = rasterize(seen, (cells[0], cells[1]), both_sides=True).depth
         dark = gaussian_filter(np.exp(-np.maximum(height, 0.0) / LIFTED * 2.0), 2.2, mode="constant")
         return _Light(sun, reach, low[:2], dark)

@@ -57,7 +57,7 @@ def models(solution: Any) -> tuple[Any, ...]:
 
 @pytest.fixture(scope="module")
 def study(solution: Any) -> MeshStudy:
-    return mesh_study(solution, (40, 80))
+    return mesh_study(solution, (32, 64))
 
 
 @pytest.fixture(scope="module")
@@ -150,7 +150,7 @@ def test_defects_vanish_on_motions_of_third_order_and_no_higher(models):
 
 
 def test_both_optima_agree_at_the_limit_to_a_thousandth(study):
-    # The second transcription is the oracle; it is there on 40 intervals already.
+    # The second transcription is the oracle; it is there on 32 intervals already.
     coarse, fine = study.rows
     assert study.approaching
     assert coarse.converged and fine.converged

@@ -46,15 +46,17 @@ class Lifted(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def without_compiler() -> Iterator[None]:
+def cheaply() -> Iterator[None]:
+    """Neither compile kernels nor shade many pixels of snapshots."""
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("liftopt.viz.plots_snapshots.PANEL", (120, 95))
         patch.setenv("CC", "")
         patch.setenv("LIFTOPT_CACHE", "/dev/null/none")
         yield
 
 
 @pytest.fixture(scope="module", params=TEAMS)
-def lifted(request: pytest.FixtureRequest, without_compiler: None, tmp_path_factory: pytest.TempPathFactory) -> Lifted:
+def lifted(request: pytest.FixtureRequest, cheaply: None, tmp_path_factory: pytest.TempPathFactory) -> Lifted:
     """The lift of one team."""
     changes = CHEAP if request.param in CLEAR else CHEAP | OVERLAPPING
     solution = lo.solve(lo.load_scenario(FILES / f"{request.param}.toml", changes))

@@ -22,7 +22,6 @@ from liftopt.scenario.file import shipped_scenarios
 from liftopt.scenario.model import Scenario, load_scenario
 from liftopt.search.cache import SolverCache
 from liftopt.search.candidate import Candidate
-from liftopt.search.solve import solve
 from liftopt.studies.parameters import Parameter, changed, parameters_of
 from liftopt.studies.sensitivity import SensitivityStudy, figures, study
 
@@ -139,7 +138,9 @@ def test_use_of_a_joint_is_torque_over_the_limit_in_its_direction(near: Sensitiv
 
 
 @pytest.mark.parametrize("name", [name for name in shipped_scenarios() if name.startswith("table5")])
-def test_the_table_of_a_shipped_scenario_is_usable(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_table_of_a_shipped_scenario_is_usable(
+    name: str, solved: Callable[..., Any], capsys: pytest.CaptureFixture[str]
+) -> None:
     """Most rows can be relied on, the others say why, and the joints are those that solve names."""
     assert main(["sensitivity", name, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -151,7 +152,7 @@ def test_the_table_of_a_shipped_scenario_is_usable(name: str, capsys: pytest.Cap
         assert row["reliable"] is (row["doubt"] is None)
         assert row["change"] <= usual[row["name"]]
         assert (row["change"] < usual[row["name"]]) <= (row["not_larger_because"] is not None)
-    for joint, agent in zip(found["busiest"], solve(load_scenario(name)).agents, strict=True):
+    for joint, agent in zip(found["busiest"], solved(name).solution.agents, strict=True):
         most = limit_share(agent).max(axis=0)
         assert joint == [agent.joint_names[j] for j in np.flatnonzero(agent.moving)][int(most.argmax())]
 

@@ -83,6 +83,28 @@ def test_every_lane_is_the_function_of_one_knot(
             np.testing.assert_allclose(got, reference, rtol=0, atol=1e-12 * (1.0 + np.abs(reference).max()))
 
 
+def test_another_processor_does_not_find_them(
+    kernels: list[SimdKernel], knot_functions: Built, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a compiler there it has none, rather than code that it cannot run; none was compiled for it before."""
+    monkeypatch.setattr(lanes, "EXTENSIONS", ())
+    monkeypatch.setenv("CC", "")
+    assert load_simd_kernels([(object_functions, knot_functions["box"][1])]) is None
+
+
+def test_a_damaged_file_is_compiled_anew(kernels: list[SimdKernel], knot_functions: Built, cache: Path) -> None:
+    """The last of those that share a cache: after it the arm would take the compiler's seconds once more."""
+    for file in cache.iterdir():
+        content = bytearray(file.read_bytes())
+        content[len(content) // 2] ^= 0xFF
+        file.unlink()
+        file.write_bytes(bytes(content))
+        file.chmod(0o600)
+    lines: list[str] = []
+    assert load_simd_kernels([(object_functions, knot_functions["box"][1])], lines.append) is not None
+    assert any("compiling" in line for line in lines)
+
+
 @pytest.mark.parametrize("extensions", [(), ("avx", "avx2", "fma")], ids=["baseline", "avx2"])
 def test_vectors_of_any_width_give_the_same_bits(
     kernels: list[SimdKernel],
@@ -122,33 +144,12 @@ def test_they_are_compiled_once(kernels: list[SimdKernel], knot_functions: Built
     assert not lines and {f.name: f.stat().st_ino for f in cache.iterdir()} == files
 
 
-def test_a_damaged_file_is_compiled_anew(kernels: list[SimdKernel], knot_functions: Built, cache: Path) -> None:
-    for file in cache.iterdir():
-        content = bytearray(file.read_bytes())
-        content[len(content) // 2] ^= 0xFF
-        file.unlink()
-        file.write_bytes(bytes(content))
-        file.chmod(0o600)
-    lines: list[str] = []
-    assert load_simd_kernels([(object_functions, knot_functions["box"][1])], lines.append) is not None
-    assert any("compiling" in line for line in lines)
-
-
 def test_without_a_compiler_there_are_none(
     knot_functions: Built, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("CC", "")
     monkeypatch.setenv("LIFTOPT_CACHE", str(tmp_path))
     assert load_simd_kernels([(agent_functions, knot_functions["arm"][1])]) is None
-
-
-def test_another_processor_does_not_find_them(
-    kernels: list[SimdKernel], knot_functions: Built, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Without a compiler there it has none, rather than code that it cannot run."""
-    monkeypatch.setattr(lanes, "EXTENSIONS", ())
-    monkeypatch.setenv("CC", "")
-    assert load_simd_kernels([(object_functions, knot_functions["box"][1])]) is None
 
 
 @pytest.mark.parametrize(
