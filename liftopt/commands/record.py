@@ -199,7 +199,10 @@ def _channels(text: str) -> tuple[str, ...]:
     for name in names:
         if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
             raise InputError("--channels", name, "a name is a letter, then letters, digits and _; commas between names")
-        side(name)
+        try:
+            side(name)
+        except InputError as error:
+            raise InputError("--channels", name, error.allowed) from None
     if len({name.lower() for name in names}) < len(names):
         raise InputError("--channels", text, "two channels have the same name")
     return names

@@ -27,7 +27,7 @@ from liftopt.storage.older_result import urdfs_beside
 from liftopt.storage.record import read_assessment, read_record
 from liftopt.storage.result_folder import SCENARIO_TEXT, URDF_TEXT
 from liftopt.storage.result_path import no_result, result_file
-from liftopt.storage.robot_check import unlike_scenario
+from liftopt.storage.robot_check import lets_go, unlike_scenario
 from liftopt.storage.solved_scenario import scenario_of
 from liftopt.storage.urdf_check import check_urdf
 from liftopt.types import Array
@@ -65,10 +65,14 @@ def load_result(path: str | Path) -> Solution:
         built: list[Agent | LiftedObject] = [*(agent_of(scenario, name) for name in own), object_of(scenario)]
         agents, lifted = agents_of(scenario, urdfs), object_of(scenario, urdfs)
         _check_models(file, scenario, built, (*agents, lifted))
-        return _solution(scenario, urdfs, agents, lifted, data, attributes)
+        solution = _solution(scenario, urdfs, agents, lifted, data, attributes)
     except (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError) as error:
         why = f"{type(error).__name__}: {error}"
         raise InputError(str(file), NO_VALUE, f"is no whole result of liftopt ({why})") from None
+    for name in scenario.agents:
+        if solution.solved and name not in own and (found := lets_go(solution, name)):
+            raise _other_model(file, name, found)
+    return solution
 
 
 def _urdfs(file: Path, attributes: Mapping[str, Any], scenario: Scenario) -> dict[str, str]:
@@ -100,8 +104,12 @@ def _check_models(
             frames = like.grasp_frames if isinstance(like, LiftedObject) else like.hands
             found = difference(one.model, like.model, frames)
         if found:
-            why = f"the model of {one.name} is not that of the result's scenario: {found}; solve again"
-            raise InputError(str(file), NO_VALUE, why)
+            raise _other_model(file, one.name, found)
+
+
+def _other_model(file: Path, name: str, found: str) -> InputError:
+    why = f"the model of {name} is not that of the result's scenario: {found}; solve again"
+    return InputError(str(file), NO_VALUE, why)
 
 
 def _solution(

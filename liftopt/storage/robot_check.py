@@ -19,8 +19,10 @@ from liftopt.multibody.robots.robot_urdf import own_joint
 from liftopt.scenario.model import Scenario
 from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_agents import T_world_base_of
+from liftopt.solution.solution import Solution
 
 SAME_LIMIT = 1e-6  # relative
+CLOSED = 5e-3  # m between where a hand is and where it holds the object; in a solved lift far below
 
 
 def unlike_scenario(scenario: Scenario, agent: Agent) -> str:
@@ -53,4 +55,18 @@ def unlike_scenario(scenario: Scenario, agent: Agent) -> str:
             said = getattr(given, entry)
             if said is not None and not math.isclose(said, values[i], rel_tol=SAME_LIMIT, abs_tol=SAME_LIMIT):
                 return f"its joint {name} has {entry} {values[i]:g}, not {said:g}"
+    return ""
+
+
+def lets_go(solution: Solution, name: str) -> str:
+    """Return how far a robot of a solved lift is from where it holds the object, in words; empty if it holds it.
+
+    Another arm at the same base, with the same names of joints, has its hand elsewhere.
+    """
+    held = solution.object.grasp_position
+    columns = np.cumsum([0, *(len(agent.grasps) for agent in solution.agents)])
+    for k, agent in enumerate(solution.agents):
+        if agent.name == name:
+            away = np.linalg.norm(agent.grasp_position - held[:, columns[k] : columns[k + 1]], axis=2).max()
+            return f"its hand is {away:.3f} m from where it holds the object" if away > CLOSED else ""
     return ""

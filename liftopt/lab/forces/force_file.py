@@ -76,6 +76,11 @@ def read_forces(path: Path, calibration: Calibration | None = None, unloaded: fl
             continue
         own, how = preload, taken
         if not taken and unloaded > 0.0:
+            lasts = time[rows[-1]] - time[rows[0]]
+            if unloaded >= lasts:
+                raise InputError(
+                    "--unloaded", unloaded, f"must be shorter than trial {mark[1]} of {path}, which lasts {lasts:g} s"
+                )
             first = rows[time[rows] <= time[rows[0]] + unloaded]
             own, how = _mean(table, names, force[first], flags[first]), f"its first {unloaded:g} s"
         notes = [*table.notes, *more, *_notes(time[rows], names, flags[rows])]

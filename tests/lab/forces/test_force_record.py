@@ -91,6 +91,8 @@ def test_forces_of_another_tool_in_grams_with_an_unloaded_start(tmp_path: Path) 
     np.testing.assert_allclose(read_forces(path)[0].hand_force, 9.81e-3 * np.array([5.0, 5.0, 905.0, 905.0]))
     np.testing.assert_allclose(read_forces(path, unloaded=0.3)[0].hand_force, [0.0, 0.0, 8.829, 8.829], atol=1e-12)
     assert "no preload was recorded" in read_forces(path)[0].notes[-1]
+    with pytest.raises(InputError, match=r"--unloaded = 0\.9: must be shorter than trial 1 of .*, which lasts 0\.9 s"):
+        read_forces(path, unloaded=0.9)
 
 
 def test_written_forces_are_read_back_with_their_flags(tmp_path: Path) -> None:
