@@ -14,14 +14,13 @@ import numpy as np
 
 from liftopt.collocation.layout import OBJECT_SIZE
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.spline import RestToRestSpline
 from liftopt.collocation.transfer import nearest
-from liftopt.search.clear_still import ClearStill, posture_of
+from liftopt.search.clear_still import ClearStill
 from liftopt.search.initial_guess import InitialGuess
-from liftopt.search.make_clear import CLEAR, MARGIN, Clearer, Pairs
+from liftopt.search.make_clear import Clearer
 from liftopt.search.moves import quintic
-from liftopt.search.postures import MAX_ITERATIONS, Posture
+from liftopt.search.postures import Posture
 from liftopt.search.session import Session
 from liftopt.search.turned_farther import with_turn
 from liftopt.types import Array
@@ -29,8 +28,6 @@ from liftopt.types import Array
 FROM_EACH_END = 4  # postures that are led to the other end
 FINER = 2  # postures for each interval
 HALVINGS = 3  # of a step that leads to no clear posture
-ROUNDS = 6  # solves of one posture, each with new planes
-WATCHED = 0.06  # pairs nearer than this to what is allowed get planes [m]: a step may be as long
 
 
 def paths_between(
@@ -39,20 +36,20 @@ def paths_between(
     """Yield motions of a problem along clear postures, from those at its ends in turns, the cheapest first.
 
     Args:
-        session: of the search, with clear postures at both ends; without them there are none.
+        session: of the search, with clear postures at an end or at both; without them there are none.
         clearer: of the team.
         problem: the lift, on any mesh.
         spline: its space of motions.
         farther: by how much hands may turn farther on the object than the scenario allows [rad].
     """
-    if not session.held or session.blocked_at_rest:
+    if not session.held:
         return
     still = ClearStill(clearer, with_turn(session.postures.problem, farther))
     phase = np.linspace(0.0, 1.0, FINER * spline.intervals + 1)
     ends = ("start", problem.task.start), ("end", problem.task.end)
     for n in range(FROM_EACH_END):
         for held, (name, begin), (_, finish) in zip(session.held, ends, reversed(ends), strict=True):
-            if n >= len(held.postures) or clearer.deadline.passed:
+            if held.reasons or n >= len(held.postures) or clearer.deadline.passed:
                 continue
             way = _followed(still, held.postures[n], begin, finish, quintic(phase))
             if way is None:
@@ -93,18 +90,4 @@ def _moved(still: ClearStill, problem: Problem, last: Posture, pose: Array) -> P
     """Return the clear posture with the object at a pose that one nearby leads to, or None."""
     coordinates = last.coordinates.copy()
     coordinates[-OBJECT_SIZE:] = np.where(np.isnan(pose), coordinates[-OBJECT_SIZE:], pose)
-    x = problem.pack(coordinates[None], last.force[None])
-    watched: Pairs = np.array([], dtype=np.int64)
-    planes: SeparatingPlanes | None = None
-    found = still.look(problem, x)
-    for _ in range(ROUNDS):
-        watched = np.union1d(watched, np.flatnonzero(found.distance[0] < still.clearer.asked + WATCHED))
-        planes = still.planes(found, watched, MARGIN, planes)
-        apart = problem.apart(planes)
-        result = still.solver(apart).solve(x, deadline=still.clearer.deadline, problem=apart, most=MAX_ITERATIONS)
-        if not result.converged:
-            return None
-        x, found = result.x, still.look(problem, result.x)
-        if (found.distance[0] - still.clearer.asked).min(initial=np.inf) >= -CLEAR:
-            return posture_of(problem, x, result.objective)
-    return None
+    return still.cleared(problem, problem.pack(coordinates[None], last.force[None]))

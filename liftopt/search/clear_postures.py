@@ -22,9 +22,10 @@ from liftopt.search.clear_still import ClearStill, posture_of
 from liftopt.search.held_off import led_ahead
 from liftopt.search.infeasibility import LeastViolation, find_least_violation
 from liftopt.search.initial_guess import SAME_POSTURE, InitialGuess, InitialGuessSet
+from liftopt.search.inverse_kinematics import CLOSED, CLOSING_ITERATIONS, Reach
 from liftopt.search.make_clear import CLEAR, MARGIN, WATCHED, Clearer, Pairs
 from liftopt.search.moves import find_moves
-from liftopt.search.postures import MAX_ITERATIONS, Posture, distinct, seed_coordinates
+from liftopt.search.postures import MAX_ITERATIONS, Posture, distinct, resting, seed_coordinates
 from liftopt.search.session import Session
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 from liftopt.types import Array
@@ -32,11 +33,14 @@ from liftopt.types import Array
 SEEDS = 96
 # Of the postures found at an end so many are to be made clear, and so many are tried, the cheapest first.
 WANTED, MOST = 6, 32
+AT_ONCE = 32  # seeds that get planes from the first solve on, where none of these postures can be made clear
 ROUNDS = 4  # solves of one posture, each with new planes
 # What is in the way at rest is in the way of every motion where it is more than this [m, deg, share of a limit].
 DECISIVE = {"m": 0.01, "deg": 5.0}
 DECISIVE_SHARE = 0.1
 EXPLAINED = 4  # postures for which it is looked what is in the way; the least of that is told
+EASINGS = 4  # of one, each with planes for the pairs that overlapped after the last
+UNHELD = 12  # so many more where no posture holds the object: what is in the way differs much from one to the next
 AT_REST = " at 0.00 s"  # as reasons have it of a problem of one knot
 
 
@@ -92,13 +96,23 @@ class _End:
         rng = np.random.default_rng(self.session.scenario.solver.seed)
         seeds = [*known, *(seed_coordinates(self.problem, self.pose, rng if i else None) for i in range(SEEDS))]
         found = [p.rounded() for p in self.at_rest.postures.search(self.pose, seeds, self._deadline) if p]
+        reach = self.at_rest.postures.kinematics.reach(
+            self.pose, np.array(seeds), self._deadline, most=CLOSING_ITERATIONS
+        )
         if not found:
-            layout = self.problem.layout
-            starts = [self.problem.pack(q[None], np.zeros((1, layout.force.shape[1]))) for q in known[:EXPLAINED]]
-            return self._explained(starts)
-        clear: list[Posture] = []
+            nearest = reach.coordinates[np.argsort(reach.shortfall, kind="stable")[:UNHELD]]
+            return self._explained([self._without_force(q) for q in [*known[:EXPLAINED], *nearest]])
         blocked: list[tuple[float, Array]] = []
-        for posture in sorted(distinct(found, SAME_POSTURE), key=_cost)[:MOST]:
+        cheapest = sorted(distinct(found, SAME_POSTURE), key=_cost)[:MOST]
+        clear = self._made_clear_of(cheapest, blocked) or self._clear_at_once(reach)
+        if clear:
+            return ClearEnd(tuple(sorted(distinct(clear, SAME_POSTURE), key=_cost)))
+        return self._explained([x for _, x in sorted(blocked, key=lambda entry: entry[0])[:EXPLAINED]])
+
+    def _made_clear_of(self, postures: Sequence[Posture], blocked: list[tuple[float, Array]]) -> list[Posture]:
+        """Return clear postures that others lead to; what leads to none is added to those blocked, with its depth."""
+        clear: list[Posture] = []
+        for posture in postures:
             if len(clear) == WANTED or self._deadline.passed:
                 break
             for x in self._starts(posture):
@@ -107,9 +121,23 @@ class _End:
                     clear.append(after)
                     break
                 blocked.append((depth, x))
-        if clear:
-            return ClearEnd(tuple(sorted(distinct(clear, SAME_POSTURE), key=_cost)))
-        return self._explained([x for _, x in sorted(blocked, key=lambda entry: entry[0])[:EXPLAINED]])
+        return clear
+
+    def _clear_at_once(self, reach: Reach) -> list[Posture]:
+        """Return clear postures that seeds lead to with planes from the first solve on.
+
+        The cheapest postures are few, and what is far from all of them is not found from there.
+        """
+        clear: list[Posture] = []
+        for coordinates in reach.coordinates[reach.shortfall < CLOSED][:AT_ONCE]:
+            if len(clear) == WANTED or self._deadline.passed:
+                break
+            after = self.at_rest.cleared(self.problem, resting(self.problem, coordinates))
+            clear += [after] if after else []
+        return clear
+
+    def _without_force(self, coordinates: Array) -> Array:
+        return self.problem.pack(coordinates[None], np.zeros((1, self.problem.layout.force.shape[1])))
 
     @property
     def _deadline(self) -> Deadline:
@@ -158,13 +186,25 @@ class _End:
         return ClearEnd(nearest, (least or eased).reasons)
 
     def _least(self, problem: Problem, starts: Sequence[Array]) -> LeastViolation | None:
-        found: list[LeastViolation] = []
-        for x in starts:
-            look = self.at_rest.look(self.problem, x)
-            pairs = np.flatnonzero(look.distance[0] < self.clearer.asked + WATCHED)
-            least = find_least_violation(problem.apart(self.at_rest.planes(look, pairs, 0.0)), [x], self._deadline)
-            found += [least] if least else []
-        return min(found, key=lambda least: (not least.sure, least.price), default=None)
+        found = [self._least_from(problem, x) for x in starts]
+        known = [least for least in found if least is not None]
+        return min(known, key=lambda least: (not least.sure, least.price), default=None)
+
+    def _least_from(self, problem: Problem, x: Array) -> LeastViolation | None:
+        """Return the posture that breaks least of those near one; None if bodies without planes overlap in it."""
+        watched: Pairs = np.array([], dtype=np.int64)
+        for _ in range(EASINGS):
+            look = self.at_rest.look(problem, x)
+            room = look.distance[0] - self.clearer.asked
+            watched = np.union1d(watched, np.flatnonzero(room < WATCHED))
+            least = find_least_violation(problem.apart(self.at_rest.planes(look, watched, 0.0)), [x], self._deadline)
+            if least is None:
+                return None
+            x = least.x
+            deep = np.flatnonzero(self.at_rest.look(problem, x).distance[0] < self.clearer.asked - CLEAR)
+            if np.isin(deep, watched).all():
+                return least
+        return None
 
 
 def _is_decisive(reason: InfeasibilityReason) -> bool:

@@ -11,7 +11,7 @@ from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.result import Solver
 from liftopt.search.feasibility_screen import stronger
-from liftopt.search.make_clear import CLEAR, Clearer, Pairs
+from liftopt.search.make_clear import CLEAR, MARGIN, Clearer, Pairs
 from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
 from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture
 from liftopt.search.solid_distances import SolidDistances, solid_distances
@@ -19,6 +19,10 @@ from liftopt.types import Array
 
 # A motion may begin to fall at its ends, so that it takes somewhat less strength than holding still there.
 RELIEF = 1.1
+ROUNDS = 6  # solves of one posture, each with new planes
+NEARBY = (
+    0.06  # pairs nearer than this to what is allowed get planes [m]: solves and steps along a path are about as long
+)
 
 
 class ClearStill:
@@ -59,6 +63,28 @@ class ClearStill:
         crossing = frozenset(np.flatnonzero(found.distance[0] < self.clearer.asked - CLEAR).tolist())
         options = PlaneOptions(self.clearer.clearance + margin, margin, None, crossing)
         return choose_planes(self.clearer.solids, found, pairs, options, like)
+
+    def cleared(self, problem: Problem, x: Array) -> Posture | None:
+        """Return the clear posture that one near it leads to, with planes from the first solve on, or None.
+
+        Args:
+            problem: of one knot, with the object at a pose.
+            x: (n_x,) unknowns to start from.
+        """
+        watched: Pairs = np.array([], dtype=np.int64)
+        planes: SeparatingPlanes | None = None
+        found = self.look(problem, x)
+        for _ in range(ROUNDS):
+            watched = np.union1d(watched, np.flatnonzero(found.distance[0] < self.clearer.asked + NEARBY))
+            planes = self.planes(found, watched, MARGIN, planes)
+            apart = problem.apart(planes)
+            result = self.solver(apart).solve(x, deadline=self.clearer.deadline, problem=apart, most=MAX_ITERATIONS)
+            if not result.converged:
+                return None
+            x, found = result.x, self.look(problem, result.x)
+            if (found.distance[0] - self.clearer.asked).min(initial=np.inf) >= -CLEAR:
+                return posture_of(problem, x, result.objective)
+        return None
 
 
 def posture_of(problem: Problem, x: Array, cost: float) -> Posture:

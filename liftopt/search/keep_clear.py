@@ -112,7 +112,10 @@ def _anyhow(
         motions = [attempt.origin.result.x for attempt in failed]
         session.held = clear_ends(session, clearer, failed[0].origin.problem, motions)
     if session.blocked_at_rest:
-        return []
+        # What no posture was found for at one end, a path from the other one may lead to.
+        found = _along_clear_postures(session, clearer, failed)
+        session.held = () if found else session.held
+        return found
     return (
         _passing(session, clearer, failed)
         or (not held_off_before and _out_of_the_lap(clearer, failed))
@@ -152,7 +155,7 @@ def _along_clear_postures(session: Session, clearer: Clearer, failed: Sequence[A
             found += [attempt.candidate] if attempt.clear else []
             if len(found) == HELD_OFF:
                 break
-        if not found and limits_turns(origin.problem):
+        if not found and limits_turns(origin.problem) and not session.blocked_at_rest:
             found = _turned_farther(session, session.clearer(origin.problem) or clearer, origin)
     return found
 

@@ -115,16 +115,21 @@ def _held(solver: Solver, problem: Problem, coordinates: Array, deadline: Deadli
     """Return the static posture found from coordinates that close on the object; None if there is none in time."""
     if deadline.passed:
         return None
-    model = problem.team.object.model
-    weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
-    share, layout = np.zeros(problem.layout.force.shape), problem.layout
-    share[:, [layout.force_columns(g).start + 2 for g in range(len(layout.grasps))]] = weight / len(layout.grasps)
-    start = problem.pack(rounded(coordinates)[None, :], share)
+    start = resting(problem, coordinates)
     result = solver.solve(start, deadline=deadline, problem=problem)
     if not result.converged:
         return None
     control, force = problem.unpack(result.x)
     return Posture(control[0], force[0], result.objective)
+
+
+def resting(problem: Problem, coordinates: Array) -> Array:
+    """Return the unknowns (n_x,) of a problem of one knot where each grasp bears its share of the weight."""
+    model = problem.team.object.model
+    weight = model.inertias[1].mass * float(np.linalg.norm(model.gravity.linear))
+    share, layout = np.zeros(problem.layout.force.shape), problem.layout
+    share[:, [layout.force_columns(g).start + 2 for g in range(len(layout.grasps))]] = weight / len(layout.grasps)
+    return problem.pack(rounded(coordinates)[None, :], share)
 
 
 def rounded(x: Array) -> Array:

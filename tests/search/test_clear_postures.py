@@ -15,6 +15,7 @@ from liftopt.search.cache import SolverCache
 from liftopt.search.clear_end import ClearEnd
 from liftopt.search.clear_postures import clear_ends, starts_between
 from liftopt.search.make_clear import Attempt
+from liftopt.search.postures import Posture
 from liftopt.search.session import Session
 
 FLOOR: dict[str, Any] = {
@@ -41,27 +42,53 @@ def searched(**changes: object) -> tuple[Session, tuple[ClearEnd, ...]]:
     return session, clear_ends(session, clearer, problem, [])
 
 
+# At the start the forearm is in the case in every posture that is the cheapest near it, and clear in others.
+CASE: dict[str, Any] = {
+    "schema": 2,
+    "name": "case",
+    "duration": 1.858,
+    "agents": {
+        "human": {
+            "kind": "person", "body": "whole", "hands": ["left"], "sex": "female", "stature": 1.794, "mass": 75.6,
+        }
+    },
+    "object": {
+        "name": "box", "mass": 6.339, "depth": 0.486, "width": 0.127, "height": 0.271,
+        "grasps": {"human": {"place": "handle", "position": [0.0, 0.0, 0.1355]}},
+    },
+    "task": {
+        "start": {"height": 1.581, "human_distance": 0.681},
+        "end": {"height": 1.261, "human_distance": 0.681},
+    },
+}  # fmt: skip
+
+
+def clear_of_all(session: Session, posture: Posture, coal_distance: Any) -> bool:
+    """Return whether no two bodies come nearer than asked by more than 1 mm in a posture with a level object."""
+    problem = session.problem(session.spline)
+    (agent,) = problem.team.agents
+    at, box = coal_distance.joint_placements(agent, posture.coordinates[:-6]), np.eye(4)
+    box[:3, 3] = posture.coordinates[-6:-3]
+
+    def placed(solid: Any) -> Any:
+        return at[solid.joint] if solid.owner == "human" else box if solid.owner == "box" else np.eye(4)
+
+    return all(
+        coal_distance.distance(pair.one, placed(pair.one), pair.other, placed(pair.other)) >= pair.asked(0.0) - 1e-3
+        for pair in session.cache.solids(session.scenario, problem.team).pairs
+    )
+
+
 def test_postures_at_both_ends_are_clear_and_motions_begin_and_end_there(coal_distance: Any) -> None:
     session, ends = searched()
     problem = session.problem(session.spline)
-    (agent,) = problem.team.agents
-    solids = session.cache.solids(session.scenario, problem.team)
     assert [bool(end.postures) for end in ends] == [True, True]
     assert not any(end.reasons for end in ends)
     for end, height in zip(ends, (0.2, 0.95), strict=True):
         for posture in end.postures:
-            q, pose = posture.coordinates[:-6], posture.coordinates[-6:]
-            assert pose[2] - 0.15 == pytest.approx(height, abs=1e-6)  # the hands hold the bottom edge of 0.3 m
-            box = np.eye(4)
-            box[:3, 3] = pose[:3]
-            at = coal_distance.joint_placements(agent, q)
-
-            def placed(solid: Any, at: Any = at, box: Any = box) -> Any:
-                return at[solid.joint] if solid.owner == "human" else box if solid.owner == "box" else np.eye(4)
-
-            for pair in solids.pairs:
-                apart = coal_distance.distance(pair.one, placed(pair.one), pair.other, placed(pair.other))
-                assert apart >= pair.asked(0.0) - 1e-3, pair.told
+            # The hands hold the bottom edge of 0.3 m.
+            assert posture.coordinates[-4] - 0.15 == pytest.approx(height, abs=1e-6)
+            assert clear_of_all(session, posture, coal_distance)
     session.held = ends
     starts = starts_between(session, problem, 3)
     assert starts
@@ -69,6 +96,13 @@ def test_postures_at_both_ends_are_clear_and_motions_begin_and_end_there(coal_di
         control = problem.unpack(start.x)[0]
         for at, end in ((control[0], ends[0]), (control[-1], ends[1])):
             assert min(np.abs(at - posture.coordinates).max() for posture in end.postures) < 1e-9
+
+
+def test_clear_postures_far_from_the_cheapest_are_found(coal_distance: Any) -> None:
+    session, (start, end) = searched(**CASE)
+    assert start.postures and not start.reasons
+    assert end.postures and not end.reasons
+    assert all(clear_of_all(session, posture, coal_distance) for posture in start.postures)
 
 
 def test_what_leaves_hands_no_room_is_named_with_them() -> None:
