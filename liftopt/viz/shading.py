@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter
 
+from liftopt.multibody.trajectory import cross
 from liftopt.types import Array
 from liftopt.viz.camera import Camera, straight
 from liftopt.viz.raster import NOTHING, Fragments, rasterize
@@ -196,7 +197,7 @@ def _shaded(
 def _normals(mesh: Mesh) -> Array:
     """Return unit normals (n, 3) at the vertices, by the areas around them."""
     a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
-    flat = np.cross(b - a, c - a)
+    flat = cross(b - a, c - a)
     normals = np.zeros_like(mesh.vertices)
     for i in range(3):
         np.add.at(normals, mesh.triangles[:, i], flat)

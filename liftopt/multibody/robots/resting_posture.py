@@ -18,6 +18,7 @@ import pinocchio as pin
 
 from liftopt.multibody.agent import JointLimits, slides
 from liftopt.multibody.robots.evenly_spread import evenly_spread
+from liftopt.multibody.trajectory import cross
 from liftopt.types import Array
 
 CANDIDATES, LED, KEPT = 256, 16, 2
@@ -147,7 +148,7 @@ def _seen(model: pin.Model, data: pin.Data, at: int, q: Array, aim: _Aim) -> tup
     # Of a single joint it is a vector.
     slopes = pin.computeFrameJacobian(model, data, q, at, pin.LOCAL_WORLD_ALIGNED).reshape(6, -1)
     tip, tool = data.oMf[at].translation, data.oMf[at].rotation[:, 2]
-    away = np.cross(tool, aim.axes[0])
+    away = cross(tool, aim.axes[0])
     sine, cosine = float(np.linalg.norm(away)), float(tool @ aim.axes[0])
     # Where it points ahead there is nothing to turn, where it points straight back any way round will do.
     turn = away * (np.arctan2(sine, cosine) / sine) if sine > 1e-9 else aim.axes[2] * np.arctan2(sine, cosine)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from liftopt.multibody.trajectory import cross
 from liftopt.types import Array
 
 # Steps toward the middle of the smallest circle: what is left is 1 / steps of its radius at most.
@@ -119,9 +120,10 @@ def _refined(points: Array, found: _Tried) -> _Tried:
     step = FIRST_STEP
     for _ in range(REFINEMENTS):
         axis = found.axis
-        aside = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        aside = cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
         aside /= np.linalg.norm(aside)
-        ways = np.array([aside, np.cross(axis, aside), -aside, -np.cross(axis, aside)])
+        other = cross(axis, aside)
+        ways = np.array([aside, other, -aside, -other])
         middle = found.middle + (found.low + found.high) / 2.0 * axis
         axes = np.concatenate([axis + step * ways, np.tile(axis, (4, 1))])
         axes /= np.linalg.norm(axes, axis=1, keepdims=True)

@@ -92,19 +92,6 @@ def test_another_processor_does_not_find_them(
     assert load_simd_kernels([(object_functions, knot_functions["box"][1])]) is None
 
 
-def test_a_damaged_file_is_compiled_anew(kernels: list[SimdKernel], knot_functions: Built, cache: Path) -> None:
-    """The last of those that share a cache: after it the arm would take the compiler's seconds once more."""
-    for file in cache.iterdir():
-        content = bytearray(file.read_bytes())
-        content[len(content) // 2] ^= 0xFF
-        file.unlink()
-        file.write_bytes(bytes(content))
-        file.chmod(0o600)
-    lines: list[str] = []
-    assert load_simd_kernels([(object_functions, knot_functions["box"][1])], lines.append) is not None
-    assert any("compiling" in line for line in lines)
-
-
 @pytest.mark.parametrize("extensions", [(), ("avx", "avx2", "fma")], ids=["baseline", "avx2"])
 def test_vectors_of_any_width_give_the_same_bits(
     kernels: list[SimdKernel],
@@ -150,6 +137,19 @@ def test_without_a_compiler_there_are_none(
     monkeypatch.setenv("CC", "")
     monkeypatch.setenv("LIFTOPT_CACHE", str(tmp_path))
     assert load_simd_kernels([(agent_functions, knot_functions["arm"][1])]) is None
+
+
+def test_a_damaged_file_is_compiled_anew(kernels: list[SimdKernel], knot_functions: Built, cache: Path) -> None:
+    """The last of those that share a cache: after it the arm would take the compiler's seconds once more."""
+    for file in cache.iterdir():
+        content = bytearray(file.read_bytes())
+        content[len(content) // 2] ^= 0xFF
+        file.unlink()
+        file.write_bytes(bytes(content))
+        file.chmod(0o600)
+    lines: list[str] = []
+    assert load_simd_kernels([(object_functions, knot_functions["box"][1])], lines.append) is not None
+    assert any("compiling" in line for line in lines)
 
 
 @pytest.mark.parametrize(
