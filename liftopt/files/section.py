@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from liftopt.errors import NO_VALUE, InputError
 from liftopt.files.entries import allowed_in, extra_of, kinds_of, meant_by
+from liftopt.files.frozen_table import FrozenTable
 from liftopt.files.suggestions import did_you_mean, nearest
 
 if TYPE_CHECKING:
@@ -120,13 +121,24 @@ def section_of(field: FieldInfo) -> type[BaseModel] | None:
 
 
 def section_at(of: type[BaseModel], keys: Sequence[str]) -> type[BaseModel] | None:
-    """Return the section that keys lead to, None if there is none."""
+    """Return the section that keys lead to, None if there is none; a table of sections has them by the user's names."""
     inside: type[BaseModel] | None = of
+    named: type[BaseModel] | None = None
     for key in keys:
+        if named is not None:
+            inside, named = named, None
+            continue
         if inside is None or key not in keys_of(inside):
             return None
-        inside = section_of(keys_of(inside)[key])
+        field = keys_of(inside)[key]
+        inside, named = section_of(field), _named_sections(field)
     return inside
+
+
+def _named_sections(field: FieldInfo) -> type[BaseModel] | None:
+    """Return the section of which a field holds a table, None if it holds something else."""
+    found = [kind for table in kinds_of(field) if get_origin(table) is FrozenTable for kind in get_args(table)]
+    return found[0] if len(found) == 1 and isinstance(found[0], type) and issubclass(found[0], BaseModel) else None
 
 
 def field_at(of: type[BaseModel], keys: Sequence[str]) -> FieldInfo | None:

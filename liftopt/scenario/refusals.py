@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from liftopt.errors import NO_VALUE, InputError
-from liftopt.files.section import refusal_at, shown_key
+from liftopt.files.section import keys_of, refusal_at, section_at, shown_key
 from liftopt.files.suggestions import did_you_mean
 from liftopt.scenario.agents import KINDS
 from liftopt.scenario.keys import AGENTS, OBSTACLES
@@ -74,6 +74,9 @@ def _unknown(of: type[BaseModel], place: Sequence[Any], value: Any, team: Mappin
         # Of a section that is not known its first entry says more than all of it.
         inner, value = next(iter(value.items()))
         place = [*place, inner]
+    inside = section_at(KINDS[team[place[0]]], place[1:-1]) if place[0] in team and len(place) > 2 else None
+    if not beside and inside is not None:  # as of a joint, by its name
+        known, beside = [f"{outer}.{key}" for key in keys_of(inside)], list(keys_of(inside))
     meant = nearest_keys(".".join(map(str, place)), [*known, *team], team)
     offer = did_you_mean(meant) or "; known here: " + ", ".join(beside)
     return InputError(".".join(shown_key(str(part)) for part in place), value, "unknown key" + offer)

@@ -23,7 +23,7 @@ from liftopt.scenario.robot import Robot
 from liftopt.scenario.robot_defaults import SAWYER
 from liftopt.types import Array
 
-OF_ENTRIES = ("locked", "limits", "grasp_frame")
+OF_ENTRIES = ("locked", "limits", "grasp_frame", "base_link")
 
 
 def agent_of_robot(scenario: Scenario, name: str, urdf: str | None = None) -> Agent:

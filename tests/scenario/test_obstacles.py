@@ -69,7 +69,7 @@ BOX = {"box": [1.0, 1.0, 1.0], "position": [0.0, 0.0, 0.0]}
         ("limits.clearance", -0.01, 'limits.clearance = -0.01: must be a number from 0 to 1 m, or "off"'),
         ("limits.clearance", "OFF", "; write off"),
         ("obstacles", 3, "obstacles = 3: must be tables [[obstacles]] of box, position, yaw_deg and name"),
-        ("obstacles", [{"box": [1.0, 1.0]}], "obstacles.obstacle_1.box = (1.0, 1.0): must be three lengths"),
+        ("obstacles", [{"box": [1.0, 1.0]}], "obstacles.obstacle_1.box = [1.0, 1.0]: must be three lengths"),
         ("obstacles", [{"box": [1.0, 1.0, 1.0]}], "obstacles.obstacle_1.position: is missing; must be three numbers"),
         ("obstacles", [BOX | {"name": "wall", "box": [1.0, 1.0, 0.0]}], "obstacles.wall.box = 0.0: must be three"),
         ("obstacles", [BOX | {"yaw": 3.0}], "obstacles.obstacle_1.yaw = 3.0: unknown key; known here: name, box,"),

@@ -19,6 +19,7 @@ from liftopt.multibody.robots.joint_ranges import JointRange, range_of
 from liftopt.types import Array
 
 OTHERS = ("floating", "planar")  # joints of more than one axis
+SAME_PLACE = 1e-6  # rad or m
 
 
 @dataclass(frozen=True)
@@ -116,10 +117,19 @@ def robot_chain(
     """
     given, source = dict(locked or {}), description.source
     for name, value in given.items():
-        if not isfinite(value) or description.joint(name).kind not in ONE_AXIS:
+        joint = description.joint(name, "locked")
+        if not isfinite(value) or joint.kind not in ONE_AXIS:
             raise InputError(f"{source}: locked {name}", value, "must be a number, of a revolute or prismatic joint")
+        ends = range_of(joint)
+        bounded = ends.source != "endless" and ends.lower < ends.upper
+        if bounded and not ends.lower - SAME_PLACE <= value <= ends.upper + SAME_PLACE:
+            raise InputError(
+                f"{source}: locked {name}",
+                value,
+                f"must be from {ends.lower:g} to {ends.upper:g}, where the joint can be",
+            )
     base = base_of(description, base)
-    path = description.joints_between(base, description.link(grasp_frame).name)
+    path = description.joints_between(base, description.link(grasp_frame, "grasp_frame").name)
     if path is None:
         raise InputError(f"{source}: grasp_frame", grasp_frame, f"the base {base!r} does not carry this link")
     moving = [joint for joint in path if _moves(joint, given, description)]
@@ -152,7 +162,7 @@ def base_of(description: RobotDescription, base: str | None) -> str:
         InputError: there is no such link, or there are several roots and none is named.
     """
     if base is not None:
-        return description.link(base).name
+        return description.link(base, "base_link").name
     if len(description.roots) != 1:
         roots = ", ".join(description.roots)
         likely = max(description.roots, key=lambda root: _carried(description, root))

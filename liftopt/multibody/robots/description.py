@@ -18,6 +18,7 @@ from liftopt.types import Array
 ONE_AXIS = ("revolute", "continuous", "prismatic")
 LARGEST_NUMBER = 1e6  # in SI units: no robot has a larger one, and readers of results take none
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
+MOST_NAMES = 16  # that a message lists
 
 
 @dataclass(frozen=True)
@@ -136,28 +137,32 @@ class RobotDescription:
         """Of all links together [kg]."""
         return sum(link.body.mass for link in self.links)
 
-    def link(self, name: str) -> RobotLink:
+    def link(self, name: str, entry: str = "") -> RobotLink:
         """Return a link.
 
         Raises:
-            InputError: there is none of that name.
+            InputError: there is none of that name; ``entry`` is what names it.
         """
         if name not in self._links:
-            meant = did_you_mean(nearest(name, self._links, 3))
-            raise InputError(self.source, name, f"it has no link of this name{meant}")
+            raise self._missing(name, entry, "link", list(self._links))
         return self._links[name]
 
-    def joint(self, name: str) -> RobotJoint:
+    def joint(self, name: str, entry: str = "") -> RobotJoint:
         """Return a joint.
 
         Raises:
-            InputError: there is none of that name.
+            InputError: there is none of that name; ``entry`` is what names it.
         """
         joints = {joint.name: joint for joint in self.joints}
         if name not in joints:
-            meant = did_you_mean(nearest(name, joints, 3))
-            raise InputError(self.source, name, f"it has no joint of this name{meant}")
+            raise self._missing(name, entry, "joint", [one.name for one in self.joints if one.kind in ONE_AXIS])
         return joints[name]
+
+    def _missing(self, name: str, entry: str, what: str, names: list[str]) -> InputError:
+        shown = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
+        meant = did_you_mean(nearest(name, names, 3)) or f"; it has {shown}"
+        key = f"{self.source}: {entry}" if entry else self.source
+        return InputError(key, name, f"it has no {what} of this name{meant}")
 
     def below(self, link: str) -> tuple[RobotJoint, ...]:
         """Return the joints that a link carries."""

@@ -32,7 +32,8 @@ def with_limits(description: RobotDescription, limits: Mapping[str, GivenLimits]
     Raises:
         InputError: there is no such joint, or a limit is no number.
     """
-    changed = {name: _changed(description.joint(name), given, description.source) for name, given in limits.items()}
+    joints = {name: description.joint(name, "limits") for name in limits}
+    changed = {name: _changed(joints[name], given, description.source) for name, given in limits.items()}
     return replace(description, joints=tuple(changed.get(joint.name, joint) for joint in description.joints))
 
 

@@ -87,12 +87,15 @@ def test_another_model_drops_what_goes_by_the_first(file: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"robot.locked": {"j9": 0.0}}, "= 'j9': it has no joint of this name"),
+        ({"robot.locked": {"q": 0.0}}, "robot.locked = 'q': it has no joint of this name; it has j1, j2, j3, j4"),
+        ({"robot.locked": {"j1": 3.0}}, "robot.locked.j1 = 3.0: must be from -2.5 to 2.1, where the joint can be"),
         ({"robot.posture": {"tool0": 0.0}}, "robot.posture = 'tool0': must be a joint that moves: j1, j2, j3, j4"),
         ({"robot.posture": {"j1": 3.0}}, "robot.posture.j1 = 3.0: must be from -2.5 to 2.1 rad or m"),
         ({"robot.joint_weights": {"q": 2.0}}, "robot.joint_weights = 'q': must be a joint that moves"),
-        ({"robot.grasp_frame": "tol0"}, "= 'tol0': it has no link of this name; did you mean tool0"),
-        ({"robot.limits": {"j1": {"effort": -1.0}}}, "robot.limits.j1.effort = -1.0: must be a"),
+        ({"robot.grasp_frame": "tol0"}, "robot.grasp_frame = 'tol0': it has no link of this name; did you mean tool0"),
+        ({"robot.base_link": "bas"}, "robot.base_link = 'bas': it has no link of this name; did you mean base"),
+        ({"robot.limits": {"j1": {"effort": -1.0}}}, "robot.limits.j1.effort = -1.0: must be a number above 0"),
+        ({"robot.limits": {"j1": {"efort": 1.0}}}, "robot.limits.j1.efort = 1.0: unknown key; did you mean "),
         ({"robot.tool": {"direction": "up"}}, "robot.tool.direction = 'up': must be"),
         ({"robot.model": "nowhere.urdf"}, "nowhere.urdf': must be a name that `liftopt robots` lists"),
     ],
