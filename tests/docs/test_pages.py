@@ -17,6 +17,7 @@ import xarray as xr
 
 import liftopt
 from liftopt.commands.cli import main
+from liftopt.viz.viewer_server import PageServer
 
 pytestmark = pytest.mark.long
 ROOT = Path(__file__).parents[2]
@@ -64,6 +65,18 @@ def _served_until_interrupted(words: list[str]) -> int:
         return served.wait(timeout=300)  # only so that a hang fails
 
 
+def _served_here(words: list[str]) -> int:
+    """Return the exit status of a page that is served by this process, interrupted as soon as it waits for requests."""
+
+    def interrupted(server: PageServer, poll_interval: float) -> None:
+        assert server.page and server.server_port and poll_interval < 1.0
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(PageServer, "serve_forever", interrupted)
+        return main([*words, "--no-browser"])
+
+
 def _made_cheap(words: list[str]) -> list[str]:
     extra = [word for entry in CHEAP for word in ("--set", entry)] if words[0] in SOLVING else []
     if words[0] == "pareto":
@@ -81,11 +94,14 @@ def lab(tmp_path_factory: pytest.TempPathFactory, column_urdf: str) -> Path:
     folder, here = tmp_path_factory.mktemp("pages"), Path.cwd()
     (folder / "my_arm.urdf").write_text(column_urdf, encoding="utf-8")  # a reader's own robot
     os.chdir(folder)
+    processes = 0
     try:
         for command, page in _commands().items():
             words = list(command)
             if words[0] == "view" and "--html" not in words:
-                assert _served_until_interrupted(words) == 0, (page, words)
+                # Each start of another process takes a second: one shows that Ctrl-C ends it, the others serve here.
+                serve, processes = (_served_here if processes else _served_until_interrupted), processes + 1
+                assert serve(words) == 0, (page, words)
             else:
                 assert main(_made_cheap(words)) == 0, (page, words)
     finally:
