@@ -128,10 +128,10 @@ def mocap(args: argparse.Namespace) -> str:
         left_measured=_measured(args, args.hand_force_left, mapping.up),
         left_share=None if left is None else checked_number("--hand-share-left", left, 0.0, 1.0, "of the load"),
     )
-    _check_together(args)
     if mapping.body == "arm" and (args.hand_force_left or left is not None):
         option = "--hand-force-left" if args.hand_force_left else "--hand-share-left"
         raise InputError(option, NO_VALUE, f"{args.mapping} maps trunk and right arm only")
+    _check_together(args)
     part = TrialPart(args.start, args.end, ignored_markers(args.ignore))
     recording = read_recording(Path(args.recording))
     lift = recorded_lift(recording, mapping, load, args.cutoff, part)

@@ -10,15 +10,13 @@ from liftopt.collocation.problem import Problem
 from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.banded import Banded, BandedOptions
 from liftopt.collocation.solvers.result import Solver
-from liftopt.search.feasibility_screen import stronger
+from liftopt.search.feasibility_screen import RELIEF, stronger
 from liftopt.search.make_clear import CLEAR, MARGIN, Clearer, Pairs
 from liftopt.search.plane_choice import NEAR, PlaneOptions, choose_planes
 from liftopt.search.postures import MAX_ITERATIONS, ROUGH, SCALING, TOLERANCE, Posture
 from liftopt.search.solid_distances import SolidDistances, solid_distances
 from liftopt.types import Array
 
-# A motion may begin to fall at its ends, so that it takes somewhat less strength than holding still there.
-RELIEF = 1.1
 ROUNDS = 6  # solves of one posture, each with new planes
 NEARBY = (
     0.06  # pairs nearer than this to what is allowed get planes [m]: solves and steps along a path are about as long

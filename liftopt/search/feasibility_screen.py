@@ -24,6 +24,8 @@ SEEDS, ITERATIONS = 24, 25
 # Iterations from the nearest postures of all: stretched arms converge slowly.
 MORE_ITERATIONS = 400
 STRONGEST = 64.0
+# A motion may begin or end falling, so that it takes somewhat less strength than holding still there.
+RELIEF = 1.1
 # Postures that differ by less in every joint [rad] are one; so many of them are tried further.
 DIFFERENT, NEAREST = 0.1, 6
 # At most so many exceeded limits are named.

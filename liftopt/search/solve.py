@@ -1,6 +1,7 @@
 """The main job, a scenario in and a verified optimal lift out, told on one page.
 
-1. Postures at both ends of the lift give initial guesses (``initial_guesses``).
+1. Postures at both ends of the lift give initial guesses (``initial_guesses``). Where a little strength is missing to
+   hold still there, those of somewhat more strength do (``begun_falling``).
 2. Many of them are solved on a coarse mesh, and the best optima are varied (``coarse_search``). Where bodies overlap in
    them they are kept apart (``keep_clear``); where that cannot be done, ``explain_blocked`` says which are in the way.
 3. The best of these are taken to the mesh that was asked for and verified there (``refine_mesh``).
@@ -18,6 +19,7 @@ from dataclasses import replace
 from liftopt.assessment.assess import assessed
 from liftopt.collocation.problem import Problem
 from liftopt.scenario.model import Scenario
+from liftopt.search.begun_falling import begun_falling
 from liftopt.search.blocked import explain_blocked
 from liftopt.search.cache import SolverCache
 from liftopt.search.coarse_search import coarse_search
@@ -77,6 +79,8 @@ def search(session: Session) -> Found:
         session.progress("looking for what is in the way")
         nearest, reasons = nearest_motion(problem, options.seed, session.deadline, session.postures)
         if reasons:
+            if (found := begun_falling(session, spline, reasons, tries, SEEDS_A_TRY * tries)) is not None:
+                return found
             best = infeasible_candidate(session.scenario, problem, spline, nearest, reasons)
             return Found(best, reasons=reasons)
         starts = [nearest]
