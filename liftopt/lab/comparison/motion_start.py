@@ -90,7 +90,8 @@ def _rest_before(record: RobotRecord, until: float, earliest: float) -> int | No
         since = record.time[k] - REST
         if record.time[k] < earliest or since < record.time[0]:
             return None
-        if _away(record.q[int(np.searchsorted(record.time, since)) : k + 1], record.q[k]).max() <= STILL:
+        first = min(int(np.searchsorted(record.time, since)), k - 1)  # one message alone shows no rest
+        if _away(record.q[first : k + 1], record.q[k]).max() <= STILL:
             return k
     return None
 

@@ -70,6 +70,16 @@ def test_the_same_motion_tells_its_start(plan: Plan, begins: float) -> None:
     assert motion_start(trial(plan, begins), *plan) == pytest.approx(begins, abs=2e-3)
 
 
+def test_one_message_within_the_time_of_rest_is_no_rest() -> None:
+    """Four messages a second of a cubic from rest to rest: at half a step at most the start is between two of them."""
+    time, every = np.linspace(0.0, 2.0, 201), 0.25
+    cubic = (time / 2.0) ** 2 * (3.0 - time)
+    plan = (time, np.stack([0.8 * cubic, -0.4 * cubic], axis=1))
+    messages = np.arange(0.0, 10.0, every)
+    record = RobotRecord("made up", messages, _at(plan, messages - 3.07), None)
+    assert motion_start(record, *plan) == pytest.approx(3.07, abs=every / 2)
+
+
 def test_noise_and_an_arm_that_stands_a_little_beside_its_start(plan: Plan) -> None:
     record = trial(plan, 4.0)
     record.q[:] += np.random.default_rng(0).normal(0.0, 2e-4, record.q.shape) + 0.03
