@@ -9,7 +9,7 @@ duration = 2.0
 agents.human = { kind = "person", stature = 1.75, mass = 75.0, sex = "male" }
 agents.robot = { kind = "robot", model = "ur10", base_height = 0.8 }
 object = { name = "box", mass = 3.0, depth = 0.4, width = 0.3, height = 0.2 }
-solver = { intervals = 10, starts = 1 }
+solver = { intervals = 10, starts = 1, time_limit = 3600.0 } # however busy the machine is
 
 [task]
 standing_distance = 1.6

@@ -38,9 +38,9 @@ def load_differences(
     differences, sizes = np.empty((2, motion.samples, len(chain.rows), 3))
     for axis in range(3):
         shift = STEP * np.eye(3)[axis]
-        ends = [
-            torque_terms(chain, motion, gravity, [replace(load, **{by: base + sign * shift})]) for sign in (1.0, -1.0)
-        ]
+        varied = [base + sign * shift for sign in (1.0, -1.0)]
+        loads = [replace(load, force=v) if by == "force" else replace(load, moment=v) for v in varied]
+        ends = [torque_terms(chain, motion, gravity, [each]) for each in loads]
         differences[..., axis] = (ends[0].tau - ends[1].tau) / (2.0 * STEP)
         sizes[..., axis] = np.max(
             [abs(e.inertia) + abs(e.gravity) + abs(e.force) + abs(e.moment) for e in ends], axis=0

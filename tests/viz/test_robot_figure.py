@@ -48,11 +48,12 @@ def test_meshes_are_where_the_urdf_has_them(
     own = [joint.removeprefix("ann_") for joint in agent.model.names[1:]]
     robot.update_cfg({**dict.fromkeys(robot.actuated_joint_names, 0.0), **dict(zip(own, q, strict=True))})
     whole = robot.scene.to_geometry()
-    samples = whole.sample(60_000, seed=1) @ T_world_base[:3, :3].T + T_world_base[:3, 3]
+    sampled = trimesh.sample.sample_surface
+    samples = sampled(whole, 60_000, seed=1)[0] @ T_world_base[:3, :3].T + T_world_base[:3, 3]
     vertices = whole.vertices @ T_world_base[:3, :3].T + T_world_base[:3, 3]
     mine = merged(drawn)
     assert cKDTree(np.vstack([samples, vertices])).query(mine.vertices)[0].max() < NEAR
-    shown = trimesh.Trimesh(mine.vertices, mine.triangles, process=False).sample(60_000, seed=2)
+    shown, _ = sampled(trimesh.Trimesh(mine.vertices, mine.triangles, process=False), 60_000, seed=2)
     assert np.quantile(cKDTree(shown).query(samples)[0], 0.99) < COVERED
 
 
