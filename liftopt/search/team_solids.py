@@ -132,8 +132,7 @@ class TeamSolids:
 
     @cached_property
     def geometries(self) -> list[Any]:
-        """Coal's shape of each solid; None of a half-space."""
-        import coal
+        """Coal's shape of each solid."""
+        from liftopt.multibody.coal_shape import coal_shape
 
-        makers = {"capsule": lambda s: coal.Capsule(*s.size), "box": lambda s: coal.Box(*s.size)}
-        return [makers[solid.kind](solid) if solid.kind in makers else None for solid in self.solids]
+        return [coal_shape(solid) for solid in self.solids]
