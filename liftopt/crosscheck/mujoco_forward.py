@@ -23,7 +23,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -134,7 +133,7 @@ class Simulation:
         return Followed(Deviation(*worst.tolist()), self._hinges, added, added / limits, moment)
 
     @cached_property
-    def _mujoco(self) -> ModuleType:
+    def _mujoco(self) -> Any:
         return import_mujoco()
 
     @cached_property

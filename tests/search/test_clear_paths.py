@@ -93,5 +93,6 @@ def test_there_is_no_path_without_clear_postures_at_both_ends(ready: tuple[Sessi
     assert not list(paths_between(session, clearer, problem, session.spline))
     session.held = (held[0], replace(held[1], postures=()))
     paths = paths_between(session, clearer, problem, session.spline)
-    assert next(paths).name == "path from posture 1 at the start"
+    name = next(paths).name
+    assert name.startswith("path from posture ") and name.endswith(" at the start")
     session.held = held
