@@ -90,4 +90,5 @@ def _moved(still: ClearStill, problem: Problem, last: Posture, pose: Array) -> P
     """Return the clear posture with the object at a pose that one nearby leads to, or None."""
     coordinates = last.coordinates.copy()
     coordinates[-OBJECT_SIZE:] = np.where(np.isnan(pose), coordinates[-OBJECT_SIZE:], pose)
-    return still.cleared(problem, problem.pack(coordinates[None], last.force[None]))
+    after, _ = still.cleared(problem, problem.pack(coordinates[None], last.force[None]))
+    return after

@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 
 from liftopt.collocation.problem import Problem
-from liftopt.collocation.separating_planes import SeparatingPlanes
 from liftopt.collocation.solvers.deadline import Deadline
 from liftopt.errors import SolverError
 from liftopt.search.clear_end import ClearEnd
@@ -23,9 +22,9 @@ from liftopt.search.held_off import led_ahead
 from liftopt.search.infeasibility import LeastViolation, find_least_violation
 from liftopt.search.initial_guess import SAME_POSTURE, InitialGuess, InitialGuessSet
 from liftopt.search.inverse_kinematics import CLOSED, CLOSING_ITERATIONS, Reach
-from liftopt.search.make_clear import CLEAR, MARGIN, WATCHED, Clearer, Pairs
+from liftopt.search.make_clear import CLEAR, WATCHED, Clearer, Pairs
 from liftopt.search.moves import find_moves
-from liftopt.search.postures import MAX_ITERATIONS, Posture, distinct, resting, seed_coordinates
+from liftopt.search.postures import Posture, distinct, resting, seed_coordinates
 from liftopt.search.session import Session
 from liftopt.solution.infeasibility_report import InfeasibilityReason
 from liftopt.types import Array
@@ -132,7 +131,7 @@ class _End:
         for coordinates in reach.coordinates[reach.shortfall < CLOSED][:AT_ONCE]:
             if len(clear) == WANTED or self._deadline.passed:
                 break
-            after = self.at_rest.cleared(self.problem, resting(self.problem, coordinates))
+            after, _ = self.at_rest.cleared(self.problem, resting(self.problem, coordinates))
             clear += [after] if after else []
         return clear
 
@@ -153,23 +152,10 @@ class _End:
 
     def _made_clear(self, x: Array, cost: float) -> tuple[Posture | None, float]:
         """Return the clear posture that one of a cost leads to, or None and how deep its deepest overlap is [m]."""
-        watched: Pairs = np.array([], dtype=np.int64)
-        planes: SeparatingPlanes | None = None
-        depth, posture = np.inf, None
-        for turn in range(ROUNDS + 1):
-            found = self.at_rest.look(self.problem, x)
-            room = found.distance[0] - self.clearer.asked
-            depth = min(depth, -float(room.min()))
-            if room.min() >= -CLEAR and (turn == 0 or posture):
-                return posture or posture_of(self.problem, x, cost), 0.0
-            if turn == ROUNDS or (turn and posture is None):
-                break
-            watched = np.union1d(watched, np.flatnonzero(room < WATCHED))
-            planes = self.at_rest.planes(found, watched, MARGIN, planes)
-            apart = self.problem.apart(planes)
-            result = self.clearer.solver(apart).solve(x, deadline=self._deadline, problem=apart, most=MAX_ITERATIONS)
-            x, posture = result.x, posture_of(self.problem, result.x, result.objective) if result.converged else None
-        return None, depth
+        room = self.at_rest.look(self.problem, x).distance[0] - self.clearer.asked
+        if room.min() >= -CLEAR:
+            return posture_of(self.problem, x, cost), 0.0
+        return self.at_rest.cleared(self.problem, x, WATCHED, ROUNDS)
 
     def _explained(self, starts: Sequence[Array]) -> ClearEnd:
         """Return the posture that breaks least with bodies apart, of those that the starts lead to, and what it breaks.

@@ -18,9 +18,8 @@ from liftopt.search.solid_distances import SolidDistances, solid_distances
 from liftopt.types import Array
 
 ROUNDS = 6  # solves of one posture, each with new planes
-NEARBY = (
-    0.06  # pairs nearer than this to what is allowed get planes [m]: solves and steps along a path are about as long
-)
+# Pairs nearer than this to what is allowed get planes [m]: solves and steps along a path are about as long.
+NEARBY = 0.06
 
 
 class ClearStill:
@@ -62,27 +61,37 @@ class ClearStill:
         options = PlaneOptions(self.clearer.clearance + margin, margin, None, crossing)
         return choose_planes(self.clearer.solids, found, pairs, options, like)
 
-    def cleared(self, problem: Problem, x: Array) -> Posture | None:
+    def cleared(
+        self, problem: Problem, x: Array, nearby: float = NEARBY, rounds: int = ROUNDS
+    ) -> tuple[Posture | None, float]:
         """Return the clear posture that one near it leads to, with planes from the first solve on, or None.
+
+        With it comes how deep the deepest overlap is, in the posture of those looked at where it is least [m].
 
         Args:
             problem: of one knot, with the object at a pose.
             x: (n_x,) unknowns to start from.
+            nearby: pairs nearer than this to what is allowed get planes [m].
+            rounds: solves, each with new planes.
         """
         watched: Pairs = np.array([], dtype=np.int64)
         planes: SeparatingPlanes | None = None
         found = self.look(problem, x)
-        for _ in range(ROUNDS):
-            watched = np.union1d(watched, np.flatnonzero(found.distance[0] < self.clearer.asked + NEARBY))
+        room = found.distance[0] - self.clearer.asked
+        depth = -float(room.min(initial=np.inf))
+        for _ in range(rounds):
+            watched = np.union1d(watched, np.flatnonzero(room < nearby))
             planes = self.planes(found, watched, MARGIN, planes)
             apart = problem.apart(planes)
             result = self.solver(apart).solve(x, deadline=self.clearer.deadline, problem=apart, most=MAX_ITERATIONS)
-            if not result.converged:
-                return None
             x, found = result.x, self.look(problem, result.x)
-            if (found.distance[0] - self.clearer.asked).min(initial=np.inf) >= -CLEAR:
-                return posture_of(problem, x, result.objective)
-        return None
+            room = found.distance[0] - self.clearer.asked
+            depth = min(depth, -float(room.min(initial=np.inf)))
+            if not result.converged:
+                break
+            if room.min(initial=np.inf) >= -CLEAR:
+                return posture_of(problem, x, result.objective), depth
+        return None, depth
 
 
 def posture_of(problem: Problem, x: Array, cost: float) -> Posture:

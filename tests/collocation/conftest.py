@@ -193,6 +193,26 @@ def differences() -> Callable[..., np.ndarray]:
     return central_differences
 
 
+def derive_from_jacobian(functions: KnotFunctions, y: np.ndarray, p: np.ndarray, m: np.ndarray) -> None:
+    """Check that gradient and curvature are J^T m, and differences of it; the Jacobian is checked elsewhere."""
+
+    def pull(at: np.ndarray) -> np.ndarray:
+        return np.asarray(functions.jacobian(at, p).full().T @ m)
+
+    whole = pull(y)
+    actual = functions.gradient(y, p, m).full().ravel()
+    np.testing.assert_allclose(actual, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
+    numeric = central_differences(pull, y)
+    curvature = functions.curvature(y, p, m).full()
+    assert not np.tril(curvature, -1).any()
+    np.testing.assert_allclose(curvature, np.triu(numeric), rtol=0, atol=1e-9 * np.abs(numeric).max())
+
+
+@pytest.fixture(scope="session")
+def check_knot_derivatives() -> Callable[..., None]:
+    return derive_from_jacobian
+
+
 @pytest.fixture(scope="session")
 def make_box() -> Callable[..., LiftedObject]:
     return box

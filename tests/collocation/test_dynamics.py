@@ -80,26 +80,11 @@ def test_jacobian_by_finite_differences_of_pinocchio(
 
 @pytest.mark.parametrize("name", AGENTS + OBJECTS)
 def test_gradient_and_curvature_are_derivatives_of_the_jacobian(
-    name: str, knot_functions: Built, rng: np.random.Generator
+    name: str, knot_functions: Built, rng: np.random.Generator, check_knot_derivatives: Callable[..., None]
 ) -> None:
-    """J^T m, and sixth-order differences of it: the Jacobian itself is checked against Pinocchio above."""
     _, topology, functions = knot_functions[name]
-    y, p, h = sample(functions, rng), np.r_[PERIOD, topology.parameters], 1e-2
-    m = rng.normal(size=functions.value.size1_out(0))
-
-    def pull(at: np.ndarray) -> np.ndarray:
-        return dense(functions.jacobian(at, p)).T @ m
-
-    expected = pull(y)
-    actual = dense(functions.gradient(y, p, m)).ravel()
-    np.testing.assert_allclose(actual, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
-    numeric = np.zeros((len(y), len(y)))
-    for j, e in enumerate(np.eye(len(y))):
-        for k, weight in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60)):
-            numeric[:, j] += weight * (pull(y + k * h * e) - pull(y - k * h * e)) / h
-    curvature = dense(functions.curvature(y, p, m))
-    assert not np.tril(curvature, -1).any()
-    np.testing.assert_allclose(curvature, np.triu(numeric), rtol=0, atol=1e-9 * np.abs(numeric).max())
+    y, p = sample(functions, rng), np.r_[PERIOD, topology.parameters]
+    check_knot_derivatives(functions, y, p, rng.normal(size=functions.value.size1_out(0)))
 
 
 @pytest.mark.parametrize("name", AGENTS)

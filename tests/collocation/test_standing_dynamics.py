@@ -98,15 +98,6 @@ def expected(model: pin.Model, topology: StandingTopology, y: np.ndarray) -> np.
     return np.concatenate([tau, lean, *outputs, pin.SE3(PLACE.T_world_base).actInv(ground).vector])
 
 
-def differences(function: Callable[[np.ndarray], np.ndarray], y: np.ndarray, h: float = 1e-2) -> np.ndarray:
-    """Return the slopes (m, n) of a function (n,) -> (m,) by differences of the sixth order."""
-    slopes = []
-    for e in np.eye(len(y)):
-        weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
-        slopes.append(sum(w * (function(y + k * h * e) - function(y - k * h * e)) / h for k, w in weights))
-    return np.array(slopes).T
-
-
 def sample(functions: KnotFunctions, rng: np.random.Generator) -> np.ndarray:
     return rng.normal(size=functions.value.size1_in(0))
 
@@ -120,7 +111,9 @@ def test_values_are_pinocchios(built: Built, rng: np.random.Generator) -> None:
         np.testing.assert_allclose(c, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
 
 
-def test_jacobian_by_finite_differences_of_pinocchio(built: Built, rng: np.random.Generator) -> None:
+def test_jacobian_by_finite_differences_of_pinocchio(
+    built: Built, rng: np.random.Generator, differences: Callable[..., np.ndarray]
+) -> None:
     model, topology, functions = built
     y = sample(functions, rng)
     numeric = differences(lambda at: expected(model, topology, at), y)
@@ -128,22 +121,12 @@ def test_jacobian_by_finite_differences_of_pinocchio(built: Built, rng: np.rando
     np.testing.assert_allclose(actual, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
 
 
-def test_gradient_and_curvature_are_derivatives_of_the_jacobian(built: Built, rng: np.random.Generator) -> None:
-    """J^T m, and differences of it: the Jacobian itself is checked against Pinocchio above."""
+def test_gradient_and_curvature_are_derivatives_of_the_jacobian(
+    built: Built, rng: np.random.Generator, check_knot_derivatives: Callable[..., None]
+) -> None:
     _, topology, functions = built
     y, p = sample(functions, rng), np.r_[PERIOD, topology.parameters]
-    m = rng.normal(size=functions.value.size1_out(0))
-
-    def pull(at: np.ndarray) -> np.ndarray:
-        return np.asarray(functions.jacobian(at, p).full().T @ m)
-
-    whole = pull(y)
-    actual = functions.gradient(y, p, m).full().ravel()
-    np.testing.assert_allclose(actual, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
-    numeric = differences(pull, y)
-    curvature = functions.curvature(y, p, m).full()
-    assert not np.tril(curvature, -1).any()
-    np.testing.assert_allclose(curvature, np.triu(numeric), rtol=0, atol=1e-9 * np.abs(numeric).max())
+    check_knot_derivatives(functions, y, p, rng.normal(size=functions.value.size1_out(0)))
 
 
 def test_squares_are_the_gauss_newton_term(built: Built, rng: np.random.Generator) -> None:
